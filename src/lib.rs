@@ -1,0 +1,3 @@
+//! voxgi: a workbench for voxel-based global illumination.
+
+pub mod problem;
