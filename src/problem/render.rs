@@ -7,16 +7,16 @@ use miette::{
 use std::fmt;
 
 /// The labels of one problem that lie in one source; further sources hang below as related reports.
-struct Report<'a> {
-    problem: &'a Problem,
+struct Report {
+    problem: Problem,
     head: bool,
-    source: Option<NamedSource<&'a str>>,
+    source: Option<NamedSource<String>>,
     labels: Vec<LabeledSpan>,
-    related: Vec<Report<'a>>,
+    related: Vec<Report>,
 }
 
-impl<'a> Report<'a> {
-    fn new(problem: &'a Problem) -> Self {
+impl Report {
+    fn new(problem: &Problem) -> Self {
         let mut by_source: Vec<(&Place, Vec<LabeledSpan>)> = Vec::new();
         for (place, text) in &problem.labels {
             let label = LabeledSpan::new(
@@ -30,14 +30,14 @@ impl<'a> Report<'a> {
             }
         }
         let mut reports = by_source.into_iter().enumerate().map(|(i, (place, labels))| Report {
-            problem,
+            problem: problem.clone(),
             head: i == 0,
-            source: Some(NamedSource::new(place.source.name(), place.source.text())),
+            source: Some(NamedSource::new(place.source.name(), place.source.text().to_owned())),
             labels,
             related: Vec::new(),
         });
         let mut head = reports.next().unwrap_or(Report {
-            problem,
+            problem: problem.clone(),
             head: true,
             source: None,
             labels: Vec::new(),
@@ -48,21 +48,21 @@ impl<'a> Report<'a> {
     }
 }
 
-impl fmt::Debug for Report<'_> {
+impl fmt::Debug for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
     }
 }
 
-impl fmt::Display for Report<'_> {
+impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(if self.head { &self.problem.message } else { "the other place" })
     }
 }
 
-impl std::error::Error for Report<'_> {}
+impl std::error::Error for Report {}
 
-impl Diagnostic for Report<'_> {
+impl Diagnostic for Report {
     fn code<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
         self.head.then(|| Box::new(self.problem.code) as _)
     }
