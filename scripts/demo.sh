@@ -19,7 +19,7 @@ for scene in scenes/*.glb; do
         scene_name=$(basename "$scene" .glb)
         pipeline_name=$(basename "$pipeline" .ron)
         folder=$out/$scene_name/$pipeline_name
-        echo "demo: $scene_name by $pipeline_name"
+        echo "demo: $scene_name by $pipeline_name -> $folder"
         rm -rf "$folder" # no picture of an earlier run passes for one of this
         mkdir -p "$folder"
         "$voxgi" render "$scene" -p "$pipeline_name" --out "$folder" </dev/null ||
@@ -36,5 +36,4 @@ if [ -n "$failed" ]; then
     echo "demo: of $pairs pairs, these failed:$failed" >&2
     exit 1
 fi
-echo "demo: all $pairs pairs rendered; the pictures:"
-find "$out" -name '*.png' | sort | sed 's/^/  /'
+echo "demo: all $pairs pairs rendered; the pictures are in $out/SCENE/PIPELINE/"

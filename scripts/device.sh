@@ -5,10 +5,11 @@
 #   software VERSION  only Mesa's software driver (lavapipe), of this version
 #   none REASON       nothing that a program could use
 #
-# vulkaninfo is asked where it is installed, since that asks the drivers. Otherwise the files decide, as the Vulkan loader would: the
-# loader itself, the drivers' manifests, and for hardware a device node that the user may open, whose kernel driver
-# is the one that a manifest's driver is for. (Mesa's packages bring the drivers of all vendors, and a node may belong to a
-# display without a GPU, so neither tells anything alone.)
+# vulkaninfo is asked where it is installed, since that asks the drivers. Otherwise the files decide: the Vulkan loader,
+# the drivers' manifests, and for hardware a device node that the user may open, whose kernel driver is the one that a
+# manifest's driver is for. (Mesa's packages bring the drivers of all vendors, and a node may belong to a display
+# without a GPU, so neither tells anything alone.) A driver that the files promise may still fail: then installing
+# vulkan-tools, which has vulkaninfo, makes the next set-up see it.
 #
 # --root DIR looks at the files under DIR in place of /, and never runs vulkaninfo; the tests use it.
 set -eu

@@ -1,8 +1,8 @@
 # shellcheck shell=sh disable=SC2154 # read by run.sh, which sets what it uses
 # install.sh on machines with a stand-in for apt: which suite it takes, what it leaves alone, how it fails.
 #
-# The stand-in reads its world from files: `release` and `backports` hold the version of the driver there, `installed` the one
-# on the machine, `offline` makes mirrors fail; `log` gets each update and install.
+# The stand-in reads its world from files: `release` and `backports` hold the version of the driver there, `installed` the
+# one on the machine, `offline` makes mirrors fail; `log` gets each update and install.
 
 codename=$(. /etc/os-release && echo "${VERSION_CODENAME:-}")
 

@@ -13,7 +13,7 @@ unset VK_DRIVER_FILES VK_ICD_FILENAMES CARGO_TARGET_DIR
 
 # The tools that the scripts may use. Whatever else the machine has (a cargo, a vulkaninfo) stays out of sight.
 mkdir "$tmp/tools"
-for tool in sh awk cat chmod cp cut diff dirname env find grep head ln mkdir mktemp readlink rm sed sort tail timeout tr uname; do
+for tool in sh awk cat chmod cp dirname env find grep head mkdir mktemp readlink rm sed sort tail timeout tr uname; do
     ln -s "$(command -v "$tool")" "$tmp/tools/$tool"
 done
 
