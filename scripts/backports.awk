@@ -71,7 +71,8 @@ function one_line(line,    options, n, field, components, i) {
     candidate(field[1], field[2], components, "deb " options field[1] " " backports " main\n")
 }
 
-# A stanza is kept as it stands, but for its types, suites and components. Lines that start with a blank go on with a field.
+# A stanza is kept as it stands, but for its types, suites and components. A line that starts with a blank continues a
+# field.
 function stanza_line(line,    colon) {
     if (line ~ /^[ \t]/) {
         if (name == "") return

@@ -1,13 +1,13 @@
 #!/bin/sh
 # Installs packages on Debian, Ubuntu and their relatives: scripts/install.sh PACKAGE...
 #
-# The Vulkan driver comes from the release where that has Mesa 25 or later (scripts/common.sh says why), otherwise from its
-# backports. The address of those is derived from the machine's own sources (scripts/backports.awk), and used in a
-# folder that is removed afterwards: apart from the packages, the machine is left as it was. Packages that are
-# there may be upgraded for it, but none is removed.
+# The Vulkan driver comes from the release where that has Mesa 25 or later (scripts/common.sh says why), otherwise from
+# its backports. The address of those is derived from the machine's own sources (scripts/backports.awk), and used in a
+# folder that is removed afterwards: apart from the packages, the machine is left as it was. Packages that are there
+# may be upgraded for it, but none is removed.
 #
-# Exit codes: 0 installed, 1 tried and failed, 3 neither the release nor its backports have anything better, 4 not possible
-# here (no apt, or neither root nor sudo without a password). All but 0 say why on standard error.
+# Exit codes: 0 installed, 1 tried and failed, 3 neither the release nor its backports have anything better, 4 not
+# possible here (no apt, or neither root nor sudo without a password). All but 0 say why on standard error.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 # shellcheck source=scripts/common.sh
@@ -85,7 +85,7 @@ case " $* " in
                 suite=
                 newest=$(driver_version Candidate)
                 if [ "$(driver_version Installed)" = "$newest" ]; then
-                    say "neither this release nor its backports have Mesa $oldest_good; the newest is $newest, as installed"
+                    say "neither this release nor its backports have Mesa $oldest_good; $newest is installed, the newest"
                     exit 3
                 fi
             fi

@@ -48,7 +48,7 @@ echo "  Candidate: \$(cat \$world/\$from)"
 END
 }
 
-# For the stand-ins: reads the arguments of apt into suite, action, packages, and added: the sources of its own that it is run on.
+# For the stand-ins: reads the arguments of apt into suite, action, packages, and added: the source that was added.
 # shellcheck disable=SC2016 # the stand-ins expand it
 apt_arguments='
 suite= action= packages= added=
