@@ -7,6 +7,8 @@ pub mod document;
 pub mod expr;
 pub mod kernel;
 pub mod library;
+pub mod picture;
 pub mod plan;
 pub mod problem;
+pub mod scene;
 pub mod schedule;

@@ -1,0 +1,33 @@
+//! The scene's lists as the bytes of storage buffers.
+
+use super::Scene;
+use bytemuck::{NoUninit, Zeroable};
+use std::borrow::Cow;
+
+/// Names of the built-in storage resources. [`super::layout::layout`] tells their elements.
+pub const NAMES: [&str; 7] = ["vertices", "triangles", "instances", "materials", "texels", "lights", "views"];
+
+impl Scene {
+    /// The content of the built-in storage resource `name`. An empty list is one zeroed element, since a binding
+    /// can't be empty; kernels take lengths from the scene's numbers, not from the buffer.
+    pub fn bytes(&self, name: &str) -> Option<Cow<'_, [u8]>> {
+        Some(match name {
+            "vertices" => list(&self.vertices),
+            "triangles" => list(&self.triangles),
+            "instances" => list(&self.instances),
+            "materials" => list(&self.materials),
+            "texels" => list(&self.texels),
+            "lights" => list(&self.lights),
+            "views" => list(&self.views),
+            _ => return None,
+        })
+    }
+}
+
+fn list<T: NoUninit + Zeroable>(items: &[T]) -> Cow<'_, [u8]> {
+    if items.is_empty() {
+        Cow::Owned(bytemuck::bytes_of(&T::zeroed()).to_vec())
+    } else {
+        Cow::Borrowed(bytemuck::cast_slice(items))
+    }
+}

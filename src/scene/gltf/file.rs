@@ -1,0 +1,189 @@
+//! The file itself: JSON or binary container, and the bytes that it refers to.
+//!
+//! Nothing here trusts a length. A file is read whole, if it is a regular file of at most [`MOST_BYTES`]; a buffer must
+//! have the bytes that it promises; only [`File::slice`] hands any out.
+
+use super::notes::{Fault, Notes};
+use super::uri::{Target, resolve};
+use crate::problem::{Problem, Problems};
+use gltf::json::{Index, Root, buffer};
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// Largest file that is read: 4 GiB, as much as a binary glTF can say.
+const MOST_BYTES: u64 = 1 << 32;
+
+pub struct File {
+    pub root: Root,
+    folder: PathBuf,
+    buffers: Vec<Vec<u8>>,
+    /// Everything that was read.
+    pub read: Vec<PathBuf>,
+}
+
+impl File {
+    pub fn open(path: &Path, notes: &mut Notes) -> Result<Self, Problems> {
+        let name = path.display();
+        let content = read(path)?;
+        let (json, binary) = split(&content).map_err(|fault| fault.at(&name.to_string(), "the start"))?;
+        let root: Root = gltf::json::deserialize::from_slice(json).map_err(|error| {
+            Problem::input("gltf-json", format!("`{name}` is not a glTF document: {error}"))
+        })?;
+        if !root.asset.version.starts_with("2.") {
+            let message = format!("`{name}` is glTF {:?}; only 2.x is understood", root.asset.version);
+            return Err(Problem::input("gltf-version", message).into());
+        }
+        let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+        let mut file = Self { root, folder, buffers: Vec::new(), read: vec![path.to_path_buf()] };
+        for index in 0..file.root.buffers.len() {
+            let data = file.buffer(index, binary);
+            let data = notes.catch(format_args!("/buffers/{index}"), data);
+            file.buffers.push(data.unwrap_or_default());
+        }
+        Ok(file)
+    }
+
+    /// The content of buffer `index`, cut to the length that it promises.
+    fn buffer(&mut self, index: usize, binary: Option<&[u8]>) -> Result<Vec<u8>, Fault> {
+        let buffer = &self.root.buffers[index];
+        let length = buffer.byte_length.0;
+        let mut data = match (&buffer.uri, binary) {
+            (Some(uri), _) => {
+                let uri = uri.clone();
+                self.fetch(&uri)?
+            }
+            (None, Some(binary)) if index == 0 => binary.to_vec(),
+            // Some extensions have buffers without content, for readers that don't know them. Using one is a fault.
+            (None, _) => return Ok(Vec::new()),
+        };
+        match usize::try_from(length) {
+            Ok(length) if length <= data.len() => data.truncate(length),
+            _ => {
+                let message = format!("byteLength is {length}, but there are only {} bytes", data.len());
+                return Err(
+                    Fault::new("gltf-length", message).help("was the file cut, or not fetched whole?")
+                );
+            }
+        }
+        Ok(data)
+    }
+
+    /// The bytes that a URI stands for.
+    pub fn fetch(&mut self, uri: &str) -> Result<Vec<u8>, Fault> {
+        let relative = match resolve(uri)? {
+            Target::Data(data) => return Ok(data),
+            Target::File(relative) => relative,
+        };
+        let path = self.folder.join(&relative);
+        let fault = |error: &dyn std::fmt::Display| {
+            Fault::new("gltf-file", format!("can't read {:?}: {error}", relative.display()))
+        };
+        // Links inside the folder could lead anywhere.
+        let here = if self.folder.as_os_str().is_empty() { Path::new(".") } else { &self.folder };
+        let folder = here.canonicalize().map_err(|error| fault(&error))?;
+        if !path.canonicalize().map_err(|error| fault(&error))?.starts_with(&folder) {
+            return Err(fault(&"it is a link out of the scene's folder"));
+        }
+        let data = read_bounded(&path).map_err(|error| fault(&error))?;
+        if !self.read.contains(&path) {
+            self.read.push(path);
+        }
+        Ok(data)
+    }
+
+    /// `length` bytes from `offset` of a buffer view.
+    pub fn slice(&self, view: Index<buffer::View>, offset: u64, length: u64) -> Result<&[u8], Fault> {
+        let views = &self.root.buffer_views;
+        let index = view.value();
+        let view = views.get(index).ok_or_else(|| Fault::beyond("buffer view", index, views.len()))?;
+        if offset.checked_add(length).is_none_or(|end| end > view.byte_length.0) {
+            let has = view.byte_length.0;
+            let message =
+                format!("needs {length} bytes from byte {offset} of buffer view {index}, which has {has}");
+            return Err(Fault::new("gltf-length", message));
+        }
+        let number = view.buffer.value();
+        let buffer = self.buffers.get(number).ok_or_else(|| {
+            Fault::beyond(&format!("(by buffer view {index}) buffer"), number, self.buffers.len())
+        })?;
+        let start = view.byte_offset.unwrap_or_default().0.checked_add(offset);
+        let range = start.zip(start.and_then(|start| start.checked_add(length)));
+        range
+            .and_then(|(start, end)| buffer.get(usize::try_from(start).ok()?..usize::try_from(end).ok()?))
+            .ok_or_else(|| {
+                let message = format!(
+                    "buffer view {index} reaches beyond the {} bytes of buffer {number}",
+                    buffer.len()
+                );
+                Fault::new("gltf-length", message)
+            })
+    }
+
+    /// All bytes of a buffer view.
+    pub fn whole(&self, view: Index<buffer::View>) -> Result<&[u8], Fault> {
+        let length = self.root.buffer_views.get(view.value()).map_or(0, |view| view.byte_length.0);
+        self.slice(view, 0, length)
+    }
+}
+
+/// Reads a file that the user named.
+pub fn read(path: &Path) -> Result<Vec<u8>, Problem> {
+    read_bounded(path).map_err(|error| {
+        let message = format!("can't read the scene `{}`: {error}", path.display());
+        match error.kind() {
+            ErrorKind::NotFound | ErrorKind::InvalidInput => Problem::input("scene-file", message),
+            _ => Problem::failure("scene-file", message),
+        }
+    })
+}
+
+fn read_bounded(path: &Path) -> std::io::Result<Vec<u8>> {
+    let metadata = fs::metadata(path)?;
+    let refuse = |why| Err(std::io::Error::new(ErrorKind::InvalidInput, why));
+    if !metadata.is_file() {
+        return refuse("it is not a regular file");
+    }
+    if metadata.len() > MOST_BYTES {
+        return refuse("it is larger than 4 GiB");
+    }
+    fs::read(path)
+}
+
+/// The JSON text and the binary chunk of a file's content.
+fn split(content: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
+    if !content.starts_with(b"glTF") {
+        return Ok((content.strip_prefix(b"\xef\xbb\xbf").unwrap_or(content), None));
+    }
+    let fault = |message: &str| Fault::new("gltf-container", message);
+    let cut = || fault("the binary glTF is cut short").help("was the file fetched whole?");
+    let word = |at: usize| {
+        let bytes = content.get(at..at + 4)?;
+        Some(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
+    };
+    let version = word(4).ok_or_else(cut)?;
+    if version != 2 {
+        return Err(fault(&format!("the binary glTF has version {version}; only 2 is understood")));
+    }
+    let length = word(8).ok_or_else(cut)? as usize;
+    // Bytes after the stated length are no part of the container.
+    let content = content.get(..length).ok_or_else(cut)?;
+    let chunk = |at: usize| -> Result<Option<(u32, &[u8], usize)>, Fault> {
+        if at >= length {
+            return Ok(None);
+        }
+        let (size, kind) = word(at).zip(word(at + 4)).ok_or_else(cut)?;
+        let start = at + 8;
+        let end = start.checked_add(size as usize).ok_or_else(cut)?;
+        Ok(Some((kind, content.get(start..end).ok_or_else(cut)?, end)))
+    };
+    const JSON: u32 = u32::from_le_bytes(*b"JSON");
+    const BIN: u32 = u32::from_le_bytes(*b"BIN\0");
+    match chunk(12)? {
+        Some((JSON, json, end)) => {
+            let binary = chunk(end)?.and_then(|(kind, data, _)| (kind == BIN).then_some(data));
+            Ok((json, binary))
+        }
+        _ => Err(fault("the first chunk of the binary glTF is not JSON")),
+    }
+}

@@ -1,0 +1,196 @@
+//! glTF 2.0, `.gltf` and `.glb`.
+//!
+//! Read are: meshes of triangles, strips and fans with positions, normals and one set of texture coordinates (plain,
+//! quantized or sparse accessors); node transforms; metallic-roughness materials with the images of colour and emission;
+//! alpha masks; punctual lights; perspective cameras. The rest that a file has is counted in [`Scene::lacks`].
+//!
+//! A file is never trusted: lengths, indices and numbers are checked where they are used, URIs stay in the file's
+//! own folder, and what a small file can blow up to has a limit. All faults that are found are reported, each with
+//! the JSON pointer of its place.
+
+mod accessor;
+mod file;
+mod material;
+mod mesh;
+mod nodes;
+mod notes;
+mod punctual;
+mod texture;
+pub(super) mod uri;
+
+use super::Scene;
+use super::layout::{Instance, Triangle};
+use crate::problem::Result;
+use file::File;
+pub(super) use file::read;
+use glam::{DMat3, DMat4, DVec3, Vec4};
+use gltf::json::mesh::{Mesh, Primitive, Semantic};
+use gltf::json::validation::Checked;
+use mesh::Meshes;
+use nodes::Placed;
+use notes::{Fault, Notes};
+use std::path::Path;
+use texture::Textures;
+
+/// Most triangles of a scene, each instance counted: 64 million, 1 GiB.
+const MOST_TRIANGLES: usize = 1 << 26;
+
+/// Extensions that a file may require: those that are read, and those without which only the looks of surfaces
+/// differ, which are counted as lacks.
+fn understood(extension: &str) -> bool {
+    const NAMES: [&str; 7] = [
+        "KHR_lights_punctual",
+        "KHR_mesh_quantization",
+        "KHR_texture_transform",
+        "KHR_texture_basisu",
+        "EXT_texture_webp",
+        "EXT_texture_avif",
+        "MSFT_texture_dds",
+    ];
+    NAMES.contains(&extension) || extension.starts_with("KHR_materials_")
+}
+
+/// The scene in the file at `path`, still without views.
+pub(super) fn load(path: &Path) -> Result<Scene> {
+    let mut notes = Notes::new(&path.display().to_string());
+    let mut file = File::open(path, &mut notes)?;
+    let required = file.root.extensions_required.iter().enumerate();
+    for (i, name) in required.filter(|(_, name)| !understood(name)) {
+        let fault = Fault::new("gltf-extension", format!("the file requires {name}, which is not read"))
+            .help("export it without that extension, or convert it to plain accessors");
+        notes.fault(format_args!("/extensionsRequired/{i}"), fault);
+    }
+    let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let mut builder = Builder::new(&file, name, &mut notes);
+    for placed in nodes::placed(&file.root, builder.notes) {
+        builder.place(&placed);
+    }
+    let Builder { mut scene, used, meshes, .. } = builder;
+    scene.vertices = meshes.vertices;
+    let mut textures = Textures::default();
+    let materials = std::mem::take(&mut file.root.materials);
+    for (i, (json, material)) in materials.iter().zip(&mut scene.materials).enumerate() {
+        if used[i] {
+            let pointer = format!("/materials/{i}");
+            material::finish(material, json, &pointer, &mut file, &mut textures, &mut notes);
+        }
+    }
+    (scene.texels, scene.images, scene.files) = (textures.texels, textures.images, file.read);
+    match scene.world_bounds() {
+        Some(bounds) if !(bounds.min.is_finite() && bounds.max.is_finite()) => {
+            notes.fault("/nodes", Fault::new("gltf-value", "the scene reaches beyond what a float can hold"));
+        }
+        bounds => scene.bounds = bounds.unwrap_or_default(),
+    }
+    scene.lacks = notes.finish()?;
+    Ok(scene)
+}
+
+struct Builder<'a> {
+    file: &'a File,
+    notes: &'a mut Notes,
+    scene: Scene,
+    meshes: Meshes,
+    /// For each material whether a primitive has it; the last one is the default material, which is not yet there.
+    used: Vec<bool>,
+}
+
+impl<'a> Builder<'a> {
+    fn new(file: &'a File, name: String, notes: &'a mut Notes) -> Self {
+        let root = &file.root;
+        let read = |(i, json)| material::read(json, &format!("/materials/{i}"), notes);
+        let materials: Vec<_> = root.materials.iter().enumerate().map(read).collect();
+        for _ in &root.animations {
+            notes.lack("animation", "not played");
+        }
+        let used = vec![false; materials.len() + 1];
+        let scene = Scene { name, materials, ..Scene::default() };
+        Self { file, notes, scene, meshes: Meshes::default(), used }
+    }
+
+    /// Adds what a node carries.
+    fn place(&mut self, placed: &Placed) {
+        let root = &self.file.root;
+        self.scene.lights.extend(punctual::light(root, placed, self.notes));
+        self.scene.cameras.extend(punctual::camera(root, placed, self.notes));
+        let Some(index) = placed.node.mesh.map(|mesh| mesh.value()) else { return };
+        let Some(mesh) = root.meshes.get(index) else {
+            let pointer = format!("/nodes/{}/mesh", placed.index);
+            return self.notes.fault(pointer, Fault::beyond("mesh", index, root.meshes.len()));
+        };
+        if placed.node.skin.is_some() {
+            self.notes.lack("skinned mesh", "drawn in its rest pose");
+        }
+        for (i, primitive) in mesh.primitives.iter().enumerate() {
+            if let Err(fault) = self.place_primitive(placed, mesh, (index, i), primitive) {
+                self.notes.fault(format_args!("/meshes/{index}/primitives/{i}"), fault);
+            }
+        }
+    }
+
+    /// `at`: indices of the mesh and of the primitive in it.
+    fn place_primitive(
+        &mut self,
+        placed: &Placed,
+        mesh: &Mesh,
+        at: (usize, usize),
+        primitive: &Primitive,
+    ) -> Result<(), Fault> {
+        let materials = &self.file.root.materials;
+        let (material, uv_set) = match primitive.material.map(|material| material.value()) {
+            None => (materials.len(), None),
+            Some(index) => {
+                let json = materials.get(index);
+                let json = json.ok_or_else(|| Fault::beyond("material", index, materials.len()))?;
+                (index, material::uv_set(json))
+            }
+        };
+        let Some(corners) = self.meshes.part(self.file, mesh, at, uv_set, self.notes) else { return Ok(()) };
+        if self.scene.triangles.len() + corners.len() > MOST_TRIANGLES {
+            return Err(Fault::new(
+                "gltf-size",
+                format!("the scene has more than {MOST_TRIANGLES} triangles"),
+            ));
+        }
+        for semantic in primitive.attributes.keys() {
+            if matches!(semantic, Checked::Valid(Semantic::Colors(_))) {
+                self.notes.lack("set of vertex colours", "left out");
+            }
+        }
+        if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
+            self.notes.lack("morphed primitive", "drawn in its rest pose");
+        }
+        self.used[material] = true;
+        if material == self.scene.materials.len() {
+            self.scene.materials.push(material::default());
+        }
+        let instance = self.scene.instances.len() as u32;
+        self.scene.instances.push(instance_of(&placed.to_world, material as u32));
+        self.scene.triangles.extend(corners.iter().map(|[a, b, c]| Triangle {
+            a: *a,
+            b: *b,
+            c: *c,
+            instance,
+        }));
+        Ok(())
+    }
+}
+
+fn instance_of(to_world: &DMat4, material: u32) -> Instance {
+    let linear = DMat3::from_mat4(*to_world);
+    let [x, y, z] = linear.to_cols_array_2d().map(DVec3::from);
+    // The inverse transpose is the matrix of cofactors over the determinant. Without the division it still turns
+    // normals right where there is no inverse, as for a mesh pressed flat.
+    let determinant = linear.determinant();
+    let scale = if determinant.recip().is_finite() { determinant.recip() } else { 1.0 };
+    let lanes = |v: DVec3| v.as_vec3().extend(0.0);
+    Instance {
+        to_world: to_world
+            .to_cols_array_2d()
+            .map(|[x, y, z, _]| Vec4::new(x as f32, y as f32, z as f32, 0.0)),
+        normal_to_world: [y.cross(z), z.cross(x), x.cross(y)].map(|cofactors| lanes(cofactors * scale)),
+        material,
+        flip: if determinant < 0.0 { -1.0 } else { 1.0 },
+        pad: [0; 2],
+    }
+}

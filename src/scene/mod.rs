@@ -1,0 +1,139 @@
+//! Scenes: triangles with materials, lights and cameras, from glTF files and settings, ready for kernels.
+//!
+//! World space is glTF's: metres, right-handed, y up. Colours are linear Rec. 709. Light is radiometric: point and spot
+//! lights in W/sr, directional lights in W/m² on a surface that faces them, emission in W/(sr·m²); glTF's
+//! candela, lux and nits are taken as such, without the factor of 683 lm/W.
+//!
+//! ```no_run
+//! let scene = voxgi::scene::load("scenes/cornell-box.glb".as_ref())?;
+//! println!("{} triangles in {:?}", scene.triangles.len(), scene.bounds);
+//! # Ok::<(), voxgi::problem::Problems>(())
+//! ```
+//!
+//! | file | what |
+//! |---|---|
+//! | [`layout`] | the types of the lists, as kernels see them |
+//! | [`buffers`] | the lists as bytes |
+//! | [`views`] | the scene as its lights see it |
+//! | [`features`] | what conditions can ask about a scene |
+//! | [`generate`] | scenes made from published numbers |
+
+mod bounds;
+pub mod buffers;
+mod camera;
+pub mod features;
+pub mod generate;
+mod gltf;
+mod image;
+pub mod layout;
+mod lights;
+mod setting;
+#[cfg(test)]
+mod tests;
+pub mod views;
+
+pub use bounds::Bounds;
+pub use camera::Camera;
+pub use image::Image;
+
+use crate::problem::{Problem, Result};
+use layout::{Instance, Light, Material, Triangle, Vertex, View};
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// A scene as loaded. Every index in it is in range, every number finite.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// The file's name without extension.
+    pub name: String,
+    /// All files that were read; the scene changes only if one of them does.
+    pub files: Vec<PathBuf>,
+    pub vertices: Vec<Vertex>,
+    pub triangles: Vec<Triangle>,
+    pub instances: Vec<Instance>,
+    pub materials: Vec<Material>,
+    pub images: Vec<Image>,
+    /// All images with their mip levels; see [`Image`].
+    pub texels: Vec<u32>,
+    pub lights: Vec<Light>,
+    pub views: Vec<View>,
+    /// At least one.
+    pub cameras: Vec<Camera>,
+    /// Of all triangles, in the world.
+    pub bounds: Bounds,
+    /// What the files have and the scene doesn't.
+    pub lacks: Vec<Lack>,
+}
+
+/// Something that a file asks for and that is done otherwise: "2 transmissive materials are rendered opaque".
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lack {
+    /// In the singular.
+    pub what: String,
+    pub count: usize,
+    pub instead: String,
+}
+
+impl fmt::Display for Lack {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.count {
+            1 => write!(f, "1 {} is {}", self.what, self.instead),
+            count => {
+                // The noun comes before what qualifies it: "set of vertex colours", "texture in a format …".
+                let split =
+                    [" of ", " in ", " with", " that "].iter().filter_map(|w| self.what.find(w)).min();
+                let (noun, rest) = self.what.split_at(split.unwrap_or(self.what.len()));
+                write!(f, "{count} {noun}s{rest} are {}", self.instead)
+            }
+        }
+    }
+}
+
+/// Loads a scene: a glTF file (`.gltf`, `.glb`), or a setting (`.ron`), which names one and adds to it.
+///
+/// Errors: `scene-file` if it can't be read, `scene-kind` for another extension, `setting…` and `gltf-…` for
+/// what is wrong inside.
+pub fn load(path: &Path) -> Result<Scene> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let scene = match extension.as_str() {
+        "gltf" | "glb" => gltf::load(path)?,
+        "ron" => setting::load(path)?,
+        _ => {
+            let message = format!("`{}` is no scene that voxgi can read", path.display());
+            let help = "scenes are glTF files (.gltf, .glb) and settings (.ron)";
+            return Err(Problem::input("scene-kind", message).help(help).into());
+        }
+    };
+    Ok(scene.finish())
+}
+
+impl Scene {
+    /// Adds what follows from the rest: views, a camera if there is none, what views can't show.
+    fn finish(mut self) -> Self {
+        self.views = views::fit(&mut self.lights, &self.bounds);
+        if self.cameras.is_empty() {
+            self.cameras.push(Camera::framing(&self.bounds));
+        }
+        let wide = self.lights.iter().filter(|light| views::wider_than_view(light)).count();
+        if wide > 0 {
+            self.lacks.push(Lack {
+                what: "spot light wider than 170°".to_owned(),
+                count: wide,
+                instead: "seen by its view only within 170°".to_owned(),
+            });
+        }
+        self
+    }
+
+    /// The box around all triangles; `None` without any.
+    fn world_bounds(&self) -> Option<Bounds> {
+        Bounds::around(self.triangles.iter().flat_map(|triangle| {
+            let [x, y, z, w] =
+                self.instances[triangle.instance as usize].to_world.map(|column| column.truncate());
+            [triangle.a, triangle.b, triangle.c].map(|corner| {
+                let p = self.vertices[corner as usize].position;
+                x * p.x + y * p.y + z * p.z + w
+            })
+        }))
+    }
+}

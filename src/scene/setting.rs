@@ -1,0 +1,188 @@
+//! Settings: RON files that name a glTF file and add lights and cameras to it.
+//!
+//! ```ron
+//! Setting(
+//!     gltf: "hall.glb",
+//!     cameras: [(name: "nave", eye: (-15, -10, 0), look_at: (5, -8, 0), fov_degrees: 65)],
+//!     lights: [
+//!         Point(position: (0, 2, 0), intensity: (10, 10, 10)),
+//!         Spot(position: (0, 2, 0), direction: (0, -1, 0), intensity: (10, 10, 10), inner_degrees: 20, outer_degrees: 30),
+//!         Directional(direction: (0.3, -1, 0.2), irradiance: (10, 10, 10)),
+//!     ],
+//! )
+//! ```
+//!
+//! The file is looked for beside the setting and below, then likewise in the folder that the environment variable
+//! `VOXGI_SCENES` names. `fov_degrees` is the full vertical angle, the degrees of a spot are half angles of its
+//! cone, a direction is the one in which light travels. The setting's lights and cameras come before the file's.
+
+use super::camera::Camera;
+use super::gltf;
+use super::layout::Light;
+use super::{Scene, lights};
+use crate::problem::{Place, Problem, Problems, Result, Source};
+use glam::{DVec3, Vec3};
+use ron::error::{Error, Position, SpannedError};
+use ron::value::RawValue;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// The environment variable that names the folder of scenes kept elsewhere.
+pub const SCENES: &str = "VOXGI_SCENES";
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Setting<'a> {
+    #[serde(borrow)]
+    gltf: &'a RawValue,
+    #[serde(borrow, default)]
+    cameras: Vec<&'a RawValue>,
+    #[serde(borrow, default)]
+    lights: Vec<&'a RawValue>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CameraEntry {
+    name: String,
+    eye: [f64; 3],
+    look_at: [f64; 3],
+    fov_degrees: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+enum LightEntry {
+    Point {
+        position: [f64; 3],
+        intensity: [f32; 3],
+    },
+    Spot {
+        position: [f64; 3],
+        direction: [f64; 3],
+        intensity: [f32; 3],
+        inner_degrees: f64,
+        outer_degrees: f64,
+    },
+    Directional {
+        direction: [f64; 3],
+        irradiance: [f32; 3],
+    },
+}
+
+/// The scene of the setting at `path`, still without views.
+pub(super) fn load(path: &Path) -> Result<Scene> {
+    let content = gltf::read(path)?;
+    let name = path.display().to_string();
+    let text = String::from_utf8(content)
+        .map_err(|_| Problem::input("setting", format!("`{name}` is no text: it is not UTF-8")))?;
+    let source = Source::new(name, text);
+    let setting: Setting = parse(&source, source.text(), 0)?;
+    let mut problems = Vec::new();
+    let mut keep = |problem| problems.push(problem);
+    let cameras: Vec<Camera> =
+        setting.cameras.iter().filter_map(|raw| camera(&source, raw).map_err(&mut keep).ok()).collect();
+    let lights: Vec<Light> =
+        setting.lights.iter().filter_map(|raw| light(&source, raw).map_err(&mut keep).ok()).collect();
+    let model = model(&source, setting.gltf, path);
+    problems.extend(model.as_ref().err().cloned());
+    Problems::check(problems)?;
+    let mut scene = gltf::load(&model?)?;
+    scene.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    scene.files.insert(0, path.to_path_buf());
+    let near = (scene.bounds.diagonal() * 1e-4).max(1e-6);
+    scene.cameras.splice(0..0, cameras.into_iter().map(|camera| Camera { near, ..camera }));
+    scene.lights.splice(0..0, lights);
+    Ok(scene)
+}
+
+/// The path of the glTF file that the setting at `path` names.
+fn model(source: &Source, raw: &RawValue, path: &Path) -> Result<PathBuf, Problem> {
+    let place = place(source, raw);
+    let name: String = parse_raw(source, raw)?;
+    let Some(relative) = gltf::uri::inside(&name) else {
+        return Err(Problem::input(
+            "setting-gltf",
+            format!("{name:?} is not a path below the setting's folder"),
+        )
+        .at(&place, "absolute, or leads out")
+        .help(format!("name a file beside the setting, or in the folder of {SCENES}, without `..`")));
+    };
+    let beside = path.parent().map(|folder| folder.join(&relative));
+    let elsewhere = std::env::var_os(SCENES).map(|folder| Path::new(&folder).join(&relative));
+    let found = beside.into_iter().chain(elsewhere).find(|path| path.is_file());
+    found.ok_or_else(|| {
+        Problem::input("setting-gltf", format!("there is no {name:?} beside the setting, nor in {SCENES}"))
+            .at(&place, "not found")
+            .help(format!("set {SCENES} to the folder that has it"))
+    })
+}
+
+fn camera(source: &Source, raw: &RawValue) -> Result<Camera, Problem> {
+    let entry: CameraEntry = parse_raw(source, raw)?;
+    let wrong =
+        |message: &str| Problem::input("setting-value", message).at(&place(source, raw), "this camera");
+    if !(entry.fov_degrees > 0.0 && entry.fov_degrees < 180.0) {
+        return Err(wrong("`fov_degrees` must be between 0 and 180"));
+    }
+    let (eye, look_at) = (DVec3::from(entry.eye), DVec3::from(entry.look_at));
+    if !(eye.as_vec3().is_finite() && look_at.as_vec3().is_finite()) {
+        return Err(wrong("`eye` and `look_at` must be finite"));
+    }
+    let camera = Camera::looking(&entry.name, eye, look_at - eye, DVec3::Y);
+    let camera = camera.ok_or_else(|| wrong("`eye` and `look_at` are the same point"))?;
+    Ok(Camera { vertical_fov: entry.fov_degrees.to_radians(), ..camera })
+}
+
+fn light(source: &Source, raw: &RawValue) -> Result<Light, Problem> {
+    let light = match parse_raw(source, raw)? {
+        LightEntry::Point { position, intensity } => lights::point(position.into(), Vec3::from(intensity)),
+        LightEntry::Spot { position, direction, intensity, inner_degrees, outer_degrees } => lights::spot(
+            position.into(),
+            direction.into(),
+            Vec3::from(intensity),
+            inner_degrees.to_radians(),
+            outer_degrees.to_radians(),
+        ),
+        LightEntry::Directional { direction, irradiance } => {
+            lights::directional(direction.into(), Vec3::from(irradiance))
+        }
+    };
+    light.map_err(|message| Problem::input("setting-value", message).at(&place(source, raw), "this light"))
+}
+
+/// Where a raw value stands: it is a piece of the source's own text.
+fn place(source: &Source, raw: &RawValue) -> Place {
+    let text = raw.trim().get_ron();
+    let start = text.as_ptr() as usize - source.text().as_ptr() as usize;
+    source.at(start..start + text.len())
+}
+
+fn parse_raw<T: for<'a> Deserialize<'a>>(source: &Source, raw: &RawValue) -> Result<T, Problem> {
+    let place = place(source, raw);
+    parse(source, place.text(), place.span.start)
+}
+
+/// Parses the piece `text` of the source, which starts at byte `offset`.
+fn parse<'a, T: Deserialize<'a>>(source: &Source, text: &'a str, offset: usize) -> Result<T, Problem> {
+    ron::from_str(text).map_err(|error| {
+        let SpannedError { code, span } = error;
+        let range = offset + byte(text, span.start)..offset + byte(text, span.end);
+        let problem = Problem::input("setting", format!("the setting can't be read: {code}"));
+        let problem = problem.at(&source.at(range), "here");
+        match &code {
+            Error::NoSuchStructField { expected, found, .. }
+            | Error::NoSuchEnumVariant { expected, found, .. } => {
+                problem.suggest(found, expected.iter().copied())
+            }
+            _ => problem,
+        }
+    })
+}
+
+/// Byte of a position, whose line and column (in characters) count from 1.
+fn byte(text: &str, position: Position) -> usize {
+    let line: usize = text.split_inclusive('\n').take(position.line.saturating_sub(1)).map(str::len).sum();
+    let column = text[line..].chars().take(position.col.saturating_sub(1));
+    line + column.map(char::len_utf8).sum::<usize>()
+}
