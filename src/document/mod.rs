@@ -1,9 +1,29 @@
 //! A pipeline or part file as written, with the position of everything in it.
 //!
 //! The types here mirror the RON one to one; nothing is resolved or evaluated. Maps keep the order of the file and
-//! refuse a key that occurs twice; unknown fields are refused.
+//! refuse a key that occurs twice; unknown fields are refused. An absent map or list is empty.
+//!
+//! The place of a text is what stands between its quotes; of anything else, all of it.
 
-use crate::problem::{Place, Source};
+mod decode;
+mod read;
+mod stages;
+#[cfg(test)]
+mod tests;
+mod tree;
+
+use crate::problem::{Place, Problem, Problems, Result, Source};
+
+/// Reads a file. Where its syntax is right, all that is wrong with its content is reported at once.
+pub fn parse(source: &Source) -> Result<Document> {
+    let tree = tree::read(source)?;
+    let mut reader = read::Reader { source, problems: Vec::new() };
+    let document = reader.document(&tree);
+    Problems::check(reader.problems)?;
+    document.ok_or_else(|| {
+        Problem::input("wrong-type", "this is no document").at(&source.at(tree.span), "all of it").into()
+    })
+}
 
 /// A value and where it stands in its file.
 #[derive(Clone, Debug, PartialEq)]
@@ -114,7 +134,7 @@ pub enum Compare {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Resource {
-    /// `Texture(format: "rgba16float", size: ["w", "h", "d"], mips: All, layers: "n", start: Covered)`
+    /// `Texture(format: "rgba16float", size: ["w", "h", "d"], mips: "all", layers: "n", start: Covered)`
     Texture {
         /// A format's name, or an expression with a text value (a knob).
         format: ExprText,
