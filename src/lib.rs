@@ -1,14 +1,21 @@
 //! voxgi: a workbench for voxel-based global illumination.
 //!
-//! A pipeline file goes one way, one type for each step: [`document`] (as written) → [`plan`] (names chosen) → graph
-//! (kernels reflected, checked) → [`schedule`] (order, memory) → frame (GPU objects) → record (times, pictures).
+//! A pipeline file goes one way, one type for each step: [`document`] (as written) → [`plan`] (names chosen) →
+//! [`graph`] (kernels reflected, checked) → [`schedule`] (order, memory) → [`frame`] (GPU objects) → [`record`] (times,
+//! pictures). Everything up to the schedule is pure. [`session`] goes the whole way.
 
+pub mod cli;
+pub mod device;
 pub mod document;
 pub mod expr;
+pub mod frame;
+pub mod graph;
 pub mod kernel;
 pub mod library;
 pub mod picture;
 pub mod plan;
 pub mod problem;
+pub mod record;
 pub mod scene;
 pub mod schedule;
+pub mod session;

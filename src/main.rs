@@ -1,1 +1,5 @@
-fn main() {}
+//! The `voxgi` command.
+
+fn main() -> std::process::ExitCode {
+    voxgi::cli::main()
+}

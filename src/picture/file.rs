@@ -42,3 +42,8 @@ fn create(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
 pub(super) fn unreadable(path: &Path, cause: impl Display) -> Problem {
     Problem::failure("picture-read", format!("can't read `{}`: {cause}", path.display()))
 }
+
+/// Writes bytes as they are.
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<()> {
+    write_whole(path, |writer| writer.write_all(bytes))
+}

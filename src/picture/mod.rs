@@ -17,6 +17,7 @@ mod tests;
 
 pub use curve::Curve;
 pub use exr_file::{read_exr, write_exr};
+pub use file::write_bytes;
 pub use png_file::{SIGNAL, read_png, write_encoded, write_png};
 
 /// A linear picture of 1 to 4 channels: `data[(y * width + x) * channels + c]`.

@@ -1,0 +1,148 @@
+//! Timestamps: one pair for each step of the schedule.
+
+use crate::device::Gpu;
+use crate::problem::Problem;
+use wgpu::{Buffer, BufferUsages, CommandEncoder, Features, QuerySet};
+
+/// Steps that one query set has room for: sets hold 4096 timestamps at most.
+const STEPS_PER_SET: usize = 2048;
+
+/// How stages are timed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// By the GPU's timestamps.
+    Timestamps,
+    /// By submitting each stage alone and waiting for it, for this reason.
+    Wall(String),
+}
+
+impl Clock {
+    pub fn name(&self) -> &'static str {
+        match self {
+            Clock::Timestamps => "gpu timestamps",
+            Clock::Wall(_) => "wall clock",
+        }
+    }
+}
+
+/// Times of one frame in ms, by step of the schedule. `None`: not run in this frame, or not known.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Times {
+    pub steps: Vec<Option<f64>>,
+    /// From the first step's begin to the last one's end.
+    pub frame: Option<f64>,
+    /// CPU time to encode and submit.
+    pub encode: f64,
+}
+
+pub struct Timer {
+    pub clock: Clock,
+    sets: Vec<QuerySet>,
+    resolved: Option<Buffer>,
+    read: Option<Buffer>,
+    /// Nanoseconds of a tick.
+    period: f64,
+    /// Fills are timed from outside passes, where the adapter can.
+    fills: bool,
+    pub times: Times,
+}
+
+impl Timer {
+    pub fn new(gpu: &Gpu, steps: usize, clock: Clock) -> Self {
+        let on = clock == Clock::Timestamps;
+        let sets = if on { steps.div_ceil(STEPS_PER_SET) } else { 0 };
+        let sets = (0..sets)
+            .map(|i| {
+                let count = (steps - i * STEPS_PER_SET).min(STEPS_PER_SET);
+                gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
+                    label: Some("timestamps"),
+                    ty: wgpu::QueryType::Timestamp,
+                    count: 2 * count as u32,
+                })
+            })
+            .collect();
+        let buffer = |usage| {
+            (on && steps > 0).then(|| {
+                gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                    label: Some("timestamps"),
+                    size: 16 * steps as u64,
+                    usage,
+                    mapped_at_creation: false,
+                })
+            })
+        };
+        Self {
+            resolved: buffer(BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC),
+            read: buffer(BufferUsages::COPY_DST | BufferUsages::MAP_READ),
+            sets,
+            period: f64::from(gpu.queue.get_timestamp_period()),
+            fills: on && gpu.has(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS),
+            times: Times { steps: vec![None; steps], ..Times::default() },
+            clock,
+        }
+    }
+
+    /// The query set and first query of a step's pass.
+    pub fn pass(&self, step: usize) -> Option<(&QuerySet, u32)> {
+        let set = self.sets.get(step / STEPS_PER_SET)?;
+        Some((set, 2 * (step % STEPS_PER_SET) as u32))
+    }
+
+    /// Marks the begin (0) or end (1) of a step outside of passes.
+    pub fn mark(&self, encoder: &mut CommandEncoder, step: usize, end: u32) {
+        if self.fills
+            && let Some((set, first)) = self.pass(step)
+        {
+            encoder.write_timestamp(set, first + end);
+        }
+    }
+
+    /// Encodes the way of the timestamps to where the CPU can read them.
+    pub fn resolve(&self, encoder: &mut CommandEncoder) {
+        let (Some(resolved), Some(read)) = (&self.resolved, &self.read) else { return };
+        for (i, set) in self.sets.iter().enumerate() {
+            let count = (self.times.steps.len() - i * STEPS_PER_SET).min(STEPS_PER_SET) as u32;
+            encoder.resolve_query_set(set, 0..2 * count, resolved, (16 * i * STEPS_PER_SET) as u64);
+        }
+        encoder.copy_buffer_to_buffer(resolved, 0, read, 0, resolved.size());
+    }
+
+    /// Reads the times of a frame that has ended; `done[step]`: the step ran, and `timed(step)`: it was marked.
+    pub fn collect(
+        &mut self,
+        gpu: &Gpu,
+        done: &[bool],
+        is_fill: impl Fn(usize) -> bool,
+    ) -> Result<(), Problem> {
+        let Some(read) = &self.read else { return Ok(()) };
+        read.slice(..).map_async(wgpu::MapMode::Read, |_| {});
+        gpu.wait()?;
+        let (mut first, mut last) = (u64::MAX, 0);
+        {
+            let bytes = read
+                .slice(..)
+                .get_mapped_range()
+                .map_err(|e| crate::device::fault(&format!("reading timestamps: {e}")))?;
+            let tick = |i: usize| {
+                let at = 8 * i;
+                bytes.get(at..at + 8).and_then(|b| b.try_into().ok()).map(u64::from_le_bytes)
+            };
+            for (step, time) in self.times.steps.iter_mut().enumerate() {
+                *time = None;
+                if !done.get(step).copied().unwrap_or(false) || (is_fill(step) && !self.fills) {
+                    continue;
+                }
+                if let (Some(begin), Some(end)) = (tick(2 * step), tick(2 * step + 1))
+                    && begin > 0
+                    && end >= begin
+                {
+                    *time = Some((end - begin) as f64 * self.period / 1e6);
+                    (first, last) = (first.min(begin), last.max(end));
+                }
+            }
+        }
+        read.unmap();
+        self.times.frame = (last > first).then(|| (last - first) as f64 * self.period / 1e6);
+        Ok(())
+    }
+}
