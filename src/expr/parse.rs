@@ -6,7 +6,7 @@ use crate::problem::{Place, Problem, Source};
 use std::ops::Range;
 
 /// How deep a tree can be, so that neither reading, computing nor dropping one can exhaust the stack.
-const MAX_DEPTH: u16 = 128;
+const MAX_DEPTH: u16 = 64;
 
 /// A piece of an expression and its bytes in the source.
 #[derive(Clone, Debug)]

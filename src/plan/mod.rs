@@ -3,10 +3,38 @@
 //! Conditions and sizes are three-valued: without a scene, what depends on it is unknown; `each` over an unknown
 //! number of elements is then unrolled once, so that its kernels are checked all the same.
 
-use crate::document::{Blend, Cause, Compare, Knob, Sampler};
+//!
+//! What names mean, from the inside out: the `bind` of a part's call, the resources that the call has for its own, the
+//! part's knobs, values and exports, the pipeline's (with what its parts export), what the scene gives. A part sees
+//! no loop around its call unless the call binds the index. A swap changes what names mean from there on, wherever they
+//! are bound: the resource that a part knows as `front` is also swapped for the pipeline that calls it `radiance`.
+//!
+//! Stages whose condition fails are planned like the others, so that they can be listed; numbers that are out of bounds
+//! there are no errors.
+
+mod knobs;
+mod loops;
+mod parts;
+mod reference;
+mod resources;
+mod setup;
+#[cfg(test)]
+mod tests;
+mod walk;
+mod world;
+
+pub use parts::SCENE_RESOURCES;
+pub use setup::{Elements, LightKind, Setup};
+pub use walk::MAX_STAGES;
+
+use crate::document::{Blend, Cause, Compare, Document, Knob, Root, Sampler};
 use crate::expr::Value;
-use crate::problem::Place;
+use crate::library::Library;
+use crate::problem::{Place, Problems, Result};
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use walk::{Around, Walk};
+use world::World;
 
 /// Index into [`Plan::resources`].
 pub type ResourceId = usize;
@@ -135,6 +163,8 @@ pub struct PlannedStage {
     pub place: Place,
     /// Where bindings, knobs and values that `bind` does not say are looked up.
     pub scope: ScopeId,
+    /// Role → the scope of its module at this stage, where a swap has changed it (see [`Plan::module_scope`]).
+    pub modules: BTreeMap<String, ScopeId>,
     pub kernel: String,
     pub kernel_place: Place,
     /// Binding or target name → reference, with the place that says so.
@@ -204,27 +234,109 @@ pub struct DepthUse {
     pub write: bool,
 }
 
+impl Condition {
+    /// Both conditions; of two that fail, the outer one is the reason.
+    fn and(&self, inner: Condition) -> Condition {
+        match (self, inner) {
+            (Condition::Fails(why), _) => Condition::Fails(why.clone()),
+            (Condition::Holds, inner) => inner,
+            (_, Condition::Fails(why)) => Condition::Fails(why),
+            (Condition::Unknown(outer), Condition::Holds) => Condition::Unknown(outer.clone()),
+            (Condition::Unknown(outer), Condition::Unknown(inner)) => {
+                Condition::Unknown(format!("{outer} && {inner}"))
+            }
+        }
+    }
+}
+
 impl Plan {
     /// What `name` means in `scope`.
     pub fn lookup(&self, scope: ScopeId, name: &str) -> Option<&Named> {
-        let mut at = Some(scope);
-        while let Some(scope) = at.and_then(|id| self.scopes.get(id)) {
-            if let Some(named) = scope.names.get(name) {
-                return Some(named);
-            }
-            at = scope.parent;
-        }
-        None
+        lookup(&self.scopes, scope, name)
     }
 
     /// All names that can be seen from `scope`, for suggestions.
     pub fn visible(&self, scope: ScopeId) -> Vec<&str> {
-        let mut names = Vec::new();
-        let mut at = Some(scope);
-        while let Some(scope) = at.and_then(|id| self.scopes.get(id)) {
-            names.extend(scope.names.keys().map(String::as_str));
-            at = scope.parent;
-        }
-        names
+        visible(&self.scopes, scope).into_iter().map(|(name, _)| name).collect()
     }
+
+    /// Where the bindings of the module in `role` are looked up for this stage.
+    pub fn module_scope(&self, stage: &PlannedStage, role: &str) -> Option<ScopeId> {
+        stage.modules.get(role).copied().or_else(|| self.modules.get(role).map(|module| module.scope))
+    }
+}
+
+fn lookup<'s>(scopes: &'s [Scope], scope: ScopeId, name: &str) -> Option<&'s Named> {
+    let mut at = Some(scope);
+    while let Some(scope) = at.and_then(|id| scopes.get(id)) {
+        if let Some(named) = scope.names.get(name) {
+            return Some(named);
+        }
+        at = scope.parent;
+    }
+    None
+}
+
+/// All names that can be seen from `scope`, once each, with what they mean there.
+fn visible(scopes: &[Scope], scope: ScopeId) -> BTreeMap<&str, &Named> {
+    let mut names = BTreeMap::new();
+    let mut at = Some(scope);
+    while let Some(scope) = at.and_then(|id| scopes.get(id)) {
+        for (name, named) in &scope.names {
+            names.entry(name.as_str()).or_insert(named);
+        }
+        at = scope.parent;
+    }
+    names
+}
+
+/// Plans a pipeline for `setup`, with its parts from `library`. All that is wrong is reported at once, except that
+/// parts that can't be read are reported alone.
+pub fn expand(document: &Document, library: &Library, setup: &Setup) -> Result<Plan> {
+    let players = parts::players(document, library, setup)?;
+    let mut world = World::new(setup);
+    let scene = world.scene_scope();
+    let pipeline = world.file_scope(document, "", scene, |_| false);
+    let mut scoped = Vec::new();
+    for player in &players {
+        let prefix = format!("{}.", player.role);
+        let own = world.file_scope(&player.document, &prefix, pipeline, |name| !player.exports_named(name));
+        world.export(player, own, pipeline);
+        scoped.push((player, own));
+    }
+    world.set_knobs();
+    let values = world.planned_values();
+    let mut walk = Walk::new(&mut world, &scoped);
+    let top = Around::top(pipeline);
+    walk.stages(&document.stages, &top);
+    walk.check_kept();
+    let mut outputs = Vec::new();
+    if let Root::Pipeline { outputs: named, .. } = &document.root {
+        for (name, text) in named {
+            if let Some(reference) = walk.reference(text, pipeline, &top) {
+                outputs.push((name.value.clone(), reference, text.place.clone()));
+            }
+        }
+    }
+    let Walk { stages, history, .. } = walk;
+    let resources = world.planned_resources(&history);
+    let warnings = Problems::check(world.take_problems())?;
+    let modules = scoped.iter().filter_map(|(player, scope)| {
+        let Root::Part { module: Some(module), .. } = &player.document.root else { return None };
+        let module = Module { kernel: module.value.clone(), scope: *scope, place: module.place.clone() };
+        Some((player.role.clone(), module))
+    });
+    let stem = Path::new(document.source.name()).file_stem().and_then(|stem| stem.to_str());
+    Ok(Plan {
+        name: stem.unwrap_or(document.source.name()).to_owned(),
+        about: document.about.value.clone(),
+        modules: modules.collect(),
+        knobs: world.knobs,
+        values,
+        resources,
+        scopes: world.scopes,
+        stages,
+        outputs,
+        warnings,
+    })
 }
