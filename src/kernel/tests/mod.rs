@@ -1,10 +1,10 @@
 //! Tests of the kernel modules. Kernels are files in a temporary library.
 
-mod compose;
+mod composing;
 mod conditions;
-mod errors;
-mod finish;
-mod reflect;
+mod finishing;
+mod mistakes;
+mod reflecting;
 mod variants;
 
 use super::{Composed, Reflected, compose, reflect};
