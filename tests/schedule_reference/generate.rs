@@ -37,7 +37,10 @@ fn a_cell(items: &[Item], item: Index, cell: u32) -> Cell {
     Cell { item, cell: cell % items[item].cells }
 }
 
-fn tasks() -> impl Strategy<Value = Vec<(u16, Vec<(Index, u32, u8)>, BTreeSet<u32>, bool)>> {
+/// Path, touches (item, cell, kind), what it depends on, whether it is off.
+type Drawn = (u16, Vec<(Index, u32, u8)>, BTreeSet<u32>, bool);
+
+fn tasks() -> impl Strategy<Value = Vec<Drawn>> {
     let touches = vec((any::<Index>(), any::<u32>(), 0..5_u8), 0..6);
     // Most tasks depend on little, or all would always run again.
     let depends =
