@@ -79,13 +79,15 @@ pub(super) fn place(
     }
     for (pool, members) in pools {
         let (items, blocks): (Vec<usize>, Vec<Block>) = members.into_iter().unzip();
-        let (numbers, objects) = packing::colour(&blocks);
-        for (item, object) in items.into_iter().zip(numbers) {
+        // What shares an object has one size, but nothing here relies on it.
+        let mut objects: BTreeMap<u32, u64> = BTreeMap::new();
+        for (item, object) in items.into_iter().zip(packing::colour(&blocks)) {
             places[item].placement = Placement::Object { pool, object };
+            let bytes = objects.entry(object).or_default();
+            *bytes = places[item].bytes.max(*bytes);
         }
-        let bytes = blocks.iter().map(|block| block.bytes).max().unwrap_or(0);
-        memory.objects.insert(pool, objects);
-        memory.peak_bytes += u64::from(objects) * bytes;
+        memory.objects.insert(pool, objects.len());
+        memory.peak_bytes += objects.values().sum::<u64>();
         memory.lower_bound_bytes += packing::most_alive(&blocks);
     }
     (places, memory)

@@ -25,6 +25,8 @@ mod packing;
 mod reruns;
 mod result;
 mod steps;
+#[cfg(test)]
+mod tests;
 mod uses;
 
 use std::collections::BTreeSet;

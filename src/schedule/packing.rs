@@ -92,9 +92,9 @@ impl Packed {
     }
 }
 
-/// By block the number of its object, and how many objects there are: as many as are ever alive at once, since lifetimes
-/// are intervals and each takes the lowest number free when it begins.
-pub(super) fn colour(blocks: &[Block]) -> (Vec<u32>, u32) {
+/// By block the number of its object. There are as many as blocks are ever alive at once, since lives are
+/// intervals, and each takes the lowest number free when it begins.
+pub(super) fn colour(blocks: &[Block]) -> Vec<u32> {
     let mut colours = vec![0; blocks.len()];
     // By object, the last step that needs it.
     let mut busy: Vec<usize> = Vec::new();
@@ -107,7 +107,7 @@ pub(super) fn colour(blocks: &[Block]) -> (Vec<u32>, u32) {
         busy[object] = life.last;
         colours[index] = object as u32;
     }
-    (colours, busy.len() as u32)
+    colours
 }
 
 /// The bytes of the largest set of blocks alive at once.

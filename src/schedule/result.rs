@@ -128,5 +128,5 @@ pub struct Memory {
     /// The size of each heap, by its number.
     pub heaps: BTreeMap<u32, u64>,
     /// How many objects each pool of alike ones has, by its number.
-    pub objects: BTreeMap<u32, u32>,
+    pub objects: BTreeMap<u32, usize>,
 }
