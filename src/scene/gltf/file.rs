@@ -3,6 +3,7 @@
 //! Nothing here trusts a length. A file is read whole, if it is a regular file of at most [`MOST_BYTES`]; a buffer must
 //! have the bytes that it promises; only [`File::slice`] hands any out.
 
+use super::container::{parse, split};
 use super::notes::{Fault, Notes};
 use super::uri::{Target, resolve};
 use crate::problem::{Problem, Problems};
@@ -27,7 +28,7 @@ impl File {
         let name = path.display();
         let content = read(path)?;
         let (json, binary) = split(&content).map_err(|fault| fault.at(&name.to_string(), "the start"))?;
-        let root: Root = gltf::json::deserialize::from_slice(json).map_err(|error| {
+        let root = parse(json).map_err(|error| {
             Problem::input("gltf-json", format!("`{name}` is not a glTF document: {error}"))
         })?;
         if !root.asset.version.starts_with("2.") {
@@ -148,42 +149,4 @@ fn read_bounded(path: &Path) -> std::io::Result<Vec<u8>> {
         return refuse("it is larger than 4 GiB");
     }
     fs::read(path)
-}
-
-/// The JSON text and the binary chunk of a file's content.
-fn split(content: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
-    if !content.starts_with(b"glTF") {
-        return Ok((content.strip_prefix(b"\xef\xbb\xbf").unwrap_or(content), None));
-    }
-    let fault = |message: &str| Fault::new("gltf-container", message);
-    let cut = || fault("the binary glTF is cut short").help("was the file fetched whole?");
-    let word = |at: usize| {
-        let bytes = content.get(at..at + 4)?;
-        Some(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
-    };
-    let version = word(4).ok_or_else(cut)?;
-    if version != 2 {
-        return Err(fault(&format!("the binary glTF has version {version}; only 2 is understood")));
-    }
-    let length = word(8).ok_or_else(cut)? as usize;
-    // Bytes after the stated length are no part of the container.
-    let content = content.get(..length).ok_or_else(cut)?;
-    let chunk = |at: usize| -> Result<Option<(u32, &[u8], usize)>, Fault> {
-        if at >= length {
-            return Ok(None);
-        }
-        let (size, kind) = word(at).zip(word(at + 4)).ok_or_else(cut)?;
-        let start = at + 8;
-        let end = start.checked_add(size as usize).ok_or_else(cut)?;
-        Ok(Some((kind, content.get(start..end).ok_or_else(cut)?, end)))
-    };
-    const JSON: u32 = u32::from_le_bytes(*b"JSON");
-    const BIN: u32 = u32::from_le_bytes(*b"BIN\0");
-    match chunk(12)? {
-        Some((JSON, json, end)) => {
-            let binary = chunk(end)?.and_then(|(kind, data, _)| (kind == BIN).then_some(data));
-            Ok((json, binary))
-        }
-        _ => Err(fault("the first chunk of the binary glTF is not JSON")),
-    }
 }

@@ -9,6 +9,7 @@
 //! the JSON pointer of its place.
 
 mod accessor;
+mod container;
 mod file;
 mod material;
 mod mesh;
@@ -119,7 +120,7 @@ impl<'a> Builder<'a> {
             return self.notes.fault(pointer, Fault::beyond("mesh", index, root.meshes.len()));
         };
         if placed.node.skin.is_some() {
-            self.notes.lack("skinned mesh", "drawn in its rest pose");
+            self.notes.lack("skinned mesh", "drawn at rest");
         }
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             if let Err(fault) = self.place_primitive(placed, mesh, (index, i), primitive) {
@@ -158,7 +159,7 @@ impl<'a> Builder<'a> {
             }
         }
         if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
-            self.notes.lack("morphed primitive", "drawn in its rest pose");
+            self.notes.lack("morphed primitive", "drawn at rest");
         }
         self.used[material] = true;
         if material == self.scene.materials.len() {
