@@ -18,7 +18,8 @@ const MOST_BYTES: u64 = 1 << 32;
 pub struct File {
     pub root: Root,
     folder: PathBuf,
-    buffers: Vec<Vec<u8>>,
+    /// `None` where the document says nothing about a buffer's content.
+    buffers: Vec<Option<Vec<u8>>>,
     /// Everything that was read.
     pub read: Vec<PathBuf>,
 }
@@ -40,13 +41,15 @@ impl File {
         for index in 0..file.root.buffers.len() {
             let data = file.buffer(index, binary);
             let data = notes.catch(format_args!("/buffers/{index}"), data);
-            file.buffers.push(data.unwrap_or_default());
+            file.buffers.push(data.flatten());
         }
+        // What is missing in a buffer is missing wherever it is used; once is enough.
+        notes.check()?;
         Ok(file)
     }
 
     /// The content of buffer `index`, cut to the length that it promises.
-    fn buffer(&mut self, index: usize, binary: Option<&[u8]>) -> Result<Vec<u8>, Fault> {
+    fn buffer(&mut self, index: usize, binary: Option<&[u8]>) -> Result<Option<Vec<u8>>, Fault> {
         let buffer = &self.root.buffers[index];
         let length = buffer.byte_length.0;
         let mut data = match (&buffer.uri, binary) {
@@ -56,7 +59,7 @@ impl File {
             }
             (None, Some(binary)) if index == 0 => binary.to_vec(),
             // Some extensions have buffers without content, for readers that don't know them. Using one is a fault.
-            (None, _) => return Ok(Vec::new()),
+            (None, _) => return Ok(None),
         };
         match usize::try_from(length) {
             Ok(length) if length <= data.len() => data.truncate(length),
@@ -67,7 +70,7 @@ impl File {
                 );
             }
         }
-        Ok(data)
+        Ok(Some(data))
     }
 
     /// The bytes that a URI stands for.
@@ -105,8 +108,12 @@ impl File {
             return Err(Fault::new("gltf-length", message));
         }
         let number = view.buffer.value();
-        let buffer = self.buffers.get(number).ok_or_else(|| {
-            Fault::beyond(&format!("(by buffer view {index}) buffer"), number, self.buffers.len())
+        let named = format!("(by buffer view {index}) buffer");
+        let buffer =
+            self.buffers.get(number).ok_or_else(|| Fault::beyond(&named, number, self.buffers.len()))?;
+        let buffer = buffer.as_ref().ok_or_else(|| {
+            let message = format!("buffer view {index} is in buffer {number}, which has no content");
+            Fault::new("gltf-length", message).help("give the buffer a `uri`, or use a binary glTF")
         })?;
         let start = view.byte_offset.unwrap_or_default().0.checked_add(offset);
         let range = start.zip(start.and_then(|start| start.checked_add(length)));
