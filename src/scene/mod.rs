@@ -125,15 +125,18 @@ impl Scene {
         self
     }
 
-    /// The box around all triangles; `None` without any.
+    /// The box around all triangles; `None` if a corner is not finite in the world.
     fn world_bounds(&self) -> Option<Bounds> {
-        Bounds::around(self.triangles.iter().flat_map(|triangle| {
-            let [x, y, z, w] =
-                self.instances[triangle.instance as usize].to_world.map(|column| column.truncate());
+        let corners = self.triangles.iter().flat_map(|triangle| {
+            let to_world = self.instances[triangle.instance as usize].to_world;
+            let [x, y, z, w] = to_world.map(|column| column.truncate());
             [triangle.a, triangle.b, triangle.c].map(|corner| {
                 let p = self.vertices[corner as usize].position;
                 x * p.x + y * p.y + z * p.z + w
             })
-        }))
+        });
+        let mut finite = true;
+        let bounds = Bounds::around(corners.inspect(|corner| finite &= corner.is_finite()));
+        finite.then_some(bounds.unwrap_or_default())
     }
 }

@@ -184,13 +184,8 @@ impl<'a> Strided<'a> {
         elements: u64,
     ) -> Result<Self, Fault> {
         let elements = count(elements)? as u64;
-        // No overflow: `count` and the stride's type leave room.
-        let length = elements.checked_sub(1).and_then(|gaps| gaps.checked_mul(stride as u64));
-        let length = match length {
-            Some(length) => length.saturating_add(size as u64),
-            None if elements == 0 => 0,
-            None => u64::MAX,
-        };
+        let gaps = elements.saturating_sub(1).saturating_mul(stride as u64);
+        let length = if elements == 0 { 0 } else { gaps.saturating_add(size as u64) };
         Ok(Self { data: file.slice(view, offset, length)?, size, stride })
     }
 

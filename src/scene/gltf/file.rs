@@ -3,6 +3,7 @@
 //! Nothing here trusts a length. A file is read whole, if it is a regular file of at most [`MOST_BYTES`]; a buffer must
 //! have the bytes that it promises; only [`File::slice`] hands any out.
 
+use super::container::{parse, split};
 use super::notes::{Fault, Notes};
 use super::uri::{Target, resolve};
 use crate::problem::{Problem, Problems};
@@ -17,7 +18,8 @@ const MOST_BYTES: u64 = 1 << 32;
 pub struct File {
     pub root: Root,
     folder: PathBuf,
-    buffers: Vec<Vec<u8>>,
+    /// `None` where the document says nothing about a buffer's content.
+    buffers: Vec<Option<Vec<u8>>>,
     /// Everything that was read.
     pub read: Vec<PathBuf>,
 }
@@ -27,7 +29,7 @@ impl File {
         let name = path.display();
         let content = read(path)?;
         let (json, binary) = split(&content).map_err(|fault| fault.at(&name.to_string(), "the start"))?;
-        let root: Root = gltf::json::deserialize::from_slice(json).map_err(|error| {
+        let root = parse(json).map_err(|error| {
             Problem::input("gltf-json", format!("`{name}` is not a glTF document: {error}"))
         })?;
         if !root.asset.version.starts_with("2.") {
@@ -39,13 +41,15 @@ impl File {
         for index in 0..file.root.buffers.len() {
             let data = file.buffer(index, binary);
             let data = notes.catch(format_args!("/buffers/{index}"), data);
-            file.buffers.push(data.unwrap_or_default());
+            file.buffers.push(data.flatten());
         }
+        // What is missing in a buffer is missing wherever it is used; once is enough.
+        notes.check()?;
         Ok(file)
     }
 
     /// The content of buffer `index`, cut to the length that it promises.
-    fn buffer(&mut self, index: usize, binary: Option<&[u8]>) -> Result<Vec<u8>, Fault> {
+    fn buffer(&mut self, index: usize, binary: Option<&[u8]>) -> Result<Option<Vec<u8>>, Fault> {
         let buffer = &self.root.buffers[index];
         let length = buffer.byte_length.0;
         let mut data = match (&buffer.uri, binary) {
@@ -55,7 +59,7 @@ impl File {
             }
             (None, Some(binary)) if index == 0 => binary.to_vec(),
             // Some extensions have buffers without content, for readers that don't know them. Using one is a fault.
-            (None, _) => return Ok(Vec::new()),
+            (None, _) => return Ok(None),
         };
         match usize::try_from(length) {
             Ok(length) if length <= data.len() => data.truncate(length),
@@ -66,7 +70,7 @@ impl File {
                 );
             }
         }
-        Ok(data)
+        Ok(Some(data))
     }
 
     /// The bytes that a URI stands for.
@@ -104,8 +108,12 @@ impl File {
             return Err(Fault::new("gltf-length", message));
         }
         let number = view.buffer.value();
-        let buffer = self.buffers.get(number).ok_or_else(|| {
-            Fault::beyond(&format!("(by buffer view {index}) buffer"), number, self.buffers.len())
+        let named = format!("(by buffer view {index}) buffer");
+        let buffer =
+            self.buffers.get(number).ok_or_else(|| Fault::beyond(&named, number, self.buffers.len()))?;
+        let buffer = buffer.as_ref().ok_or_else(|| {
+            let message = format!("buffer view {index} is in buffer {number}, which has no content");
+            Fault::new("gltf-length", message).help("give the buffer a `uri`, or use a binary glTF")
         })?;
         let start = view.byte_offset.unwrap_or_default().0.checked_add(offset);
         let range = start.zip(start.and_then(|start| start.checked_add(length)));
@@ -148,42 +156,4 @@ fn read_bounded(path: &Path) -> std::io::Result<Vec<u8>> {
         return refuse("it is larger than 4 GiB");
     }
     fs::read(path)
-}
-
-/// The JSON text and the binary chunk of a file's content.
-fn split(content: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
-    if !content.starts_with(b"glTF") {
-        return Ok((content.strip_prefix(b"\xef\xbb\xbf").unwrap_or(content), None));
-    }
-    let fault = |message: &str| Fault::new("gltf-container", message);
-    let cut = || fault("the binary glTF is cut short").help("was the file fetched whole?");
-    let word = |at: usize| {
-        let bytes = content.get(at..at + 4)?;
-        Some(u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]))
-    };
-    let version = word(4).ok_or_else(cut)?;
-    if version != 2 {
-        return Err(fault(&format!("the binary glTF has version {version}; only 2 is understood")));
-    }
-    let length = word(8).ok_or_else(cut)? as usize;
-    // Bytes after the stated length are no part of the container.
-    let content = content.get(..length).ok_or_else(cut)?;
-    let chunk = |at: usize| -> Result<Option<(u32, &[u8], usize)>, Fault> {
-        if at >= length {
-            return Ok(None);
-        }
-        let (size, kind) = word(at).zip(word(at + 4)).ok_or_else(cut)?;
-        let start = at + 8;
-        let end = start.checked_add(size as usize).ok_or_else(cut)?;
-        Ok(Some((kind, content.get(start..end).ok_or_else(cut)?, end)))
-    };
-    const JSON: u32 = u32::from_le_bytes(*b"JSON");
-    const BIN: u32 = u32::from_le_bytes(*b"BIN\0");
-    match chunk(12)? {
-        Some((JSON, json, end)) => {
-            let binary = chunk(end)?.and_then(|(kind, data, _)| (kind == BIN).then_some(data));
-            Ok((json, binary))
-        }
-        _ => Err(fault("the first chunk of the binary glTF is not JSON")),
-    }
 }

@@ -123,7 +123,7 @@ pub fn finish(
     for name in json.extensions.iter().flat_map(|e| e.others.keys()) {
         match name.as_str() {
             "KHR_materials_transmission" => notes.lack("transmissive material", "rendered opaque"),
-            _ => notes.lack(&format!("material's {name}"), "left out"),
+            _ => notes.lack(&format!("use of {name}"), "left out"),
         }
     }
 }

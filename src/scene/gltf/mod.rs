@@ -9,6 +9,7 @@
 //! the JSON pointer of its place.
 
 mod accessor;
+mod container;
 mod file;
 mod material;
 mod mesh;
@@ -32,8 +33,8 @@ use notes::{Fault, Notes};
 use std::path::Path;
 use texture::Textures;
 
-/// Most triangles of a scene, each instance counted: 64 million, 1 GiB.
-const MOST_TRIANGLES: usize = 1 << 26;
+/// Most triangles of a scene, each instance counted: 32 million, 512 MiB.
+const MOST_TRIANGLES: usize = 1 << 25;
 
 /// Extensions that a file may require: those that are read, and those without which only the looks of surfaces
 /// differ, which are counted as lacks.
@@ -77,10 +78,10 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
     }
     (scene.texels, scene.images, scene.files) = (textures.texels, textures.images, file.read);
     match scene.world_bounds() {
-        Some(bounds) if !(bounds.min.is_finite() && bounds.max.is_finite()) => {
-            notes.fault("/nodes", Fault::new("gltf-value", "the scene reaches beyond what a float can hold"));
+        Some(bounds) => scene.bounds = bounds,
+        None => {
+            notes.fault("/nodes", Fault::new("gltf-value", "the scene reaches beyond what a float can hold"))
         }
-        bounds => scene.bounds = bounds.unwrap_or_default(),
     }
     scene.lacks = notes.finish()?;
     Ok(scene)
@@ -118,8 +119,13 @@ impl<'a> Builder<'a> {
             let pointer = format!("/nodes/{}/mesh", placed.index);
             return self.notes.fault(pointer, Fault::beyond("mesh", index, root.meshes.len()));
         };
+        if !placed.to_world.as_mat4().is_finite() {
+            let fault =
+                Fault::new("gltf-value", "with its parents, the transform is beyond what a float can hold");
+            return self.notes.fault(format_args!("/nodes/{}", placed.index), fault);
+        }
         if placed.node.skin.is_some() {
-            self.notes.lack("skinned mesh", "drawn in its rest pose");
+            self.notes.lack("skinned mesh", "drawn at rest");
         }
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             if let Err(fault) = self.place_primitive(placed, mesh, (index, i), primitive) {
@@ -158,7 +164,7 @@ impl<'a> Builder<'a> {
             }
         }
         if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
-            self.notes.lack("morphed primitive", "drawn in its rest pose");
+            self.notes.lack("morphed primitive", "drawn at rest");
         }
         self.used[material] = true;
         if material == self.scene.materials.len() {
@@ -179,16 +185,23 @@ impl<'a> Builder<'a> {
 fn instance_of(to_world: &DMat4, material: u32) -> Instance {
     let linear = DMat3::from_mat4(*to_world);
     let [x, y, z] = linear.to_cols_array_2d().map(DVec3::from);
-    // The inverse transpose is the matrix of cofactors over the determinant. Without the division it still turns
-    // normals right where there is no inverse, as for a mesh pressed flat.
+    // The inverse transpose is the matrix of cofactors over the determinant.
     let determinant = linear.determinant();
-    let scale = if determinant.recip().is_finite() { determinant.recip() } else { 1.0 };
-    let lanes = |v: DVec3| v.as_vec3().extend(0.0);
+    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+    let inverse = cofactors * determinant.recip();
+    let normals = if inverse.is_finite() && inverse.as_mat3().is_finite() {
+        inverse
+    } else {
+        // For a mesh pressed flat there is no inverse, but the cofactors still turn normals right.
+        let largest = cofactors.to_cols_array().into_iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
+        cofactors * (if largest > 0.0 { largest.recip() } else { 1.0 }) * determinant.signum()
+    };
     Instance {
         to_world: to_world
             .to_cols_array_2d()
             .map(|[x, y, z, _]| Vec4::new(x as f32, y as f32, z as f32, 0.0)),
-        normal_to_world: [y.cross(z), z.cross(x), x.cross(y)].map(|cofactors| lanes(cofactors * scale)),
+        normal_to_world: [normals.x_axis, normals.y_axis, normals.z_axis]
+            .map(|column| column.as_vec3().extend(0.0)),
         material,
         flip: if determinant < 0.0 { -1.0 } else { 1.0 },
         pad: [0; 2],

@@ -75,6 +75,11 @@ impl Notes {
         }
     }
 
+    /// The faults so far, if there are any.
+    pub fn check(&self) -> Result<(), Problems> {
+        Problems::check(self.problems.clone()).map(|_| ())
+    }
+
     /// The lacks, if there was no fault.
     pub fn finish(self) -> Result<Vec<Lack>, Problems> {
         Problems::check(self.problems).map(|_| self.lacks)

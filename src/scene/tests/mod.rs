@@ -1,0 +1,6 @@
+mod images;
+mod layout;
+mod lens;
+mod setting;
+mod uri;
+mod views;

@@ -1,0 +1,5 @@
+//! The glTF loader: right files, and wrong and hostile ones.
+
+mod documents;
+mod hostile;
+mod right;
