@@ -67,7 +67,7 @@ fn cone_begin(position: vec3f, n: vec3f, direction: vec3f, resolution: f32) -> C
         direction,
         lift,
         max(dot(n, direction), LEAST_RISE),
-        1.5 * norm_1(n),
+        2.1 * norm_1(n),
         0.5,
         grid_exit(origin, direction, resolution),
         0.0,
@@ -114,7 +114,8 @@ fn step_opacity(opacity: f32, s: f32) -> f32 {
 /// Puts a sample (premultiplied colour, opacity) behind what the cone has met so far. Returns by how much the sample's
 /// colour is to be scaled, and takes what it stops from the cone.
 fn cone_absorb(cone: ptr<function, Cone>, opacity: f32, knobs_: ConeKnobs) -> f32 {
-    let s = (*cone).length * knobs_.density / stored_length((*cone).level);
+    let density = mix(knobs_.density, 1.0, exp2(-(*cone).level));
+    let s = (*cone).length * density / stored_length((*cone).level);
     let stopped = step_opacity(opacity, s);
     let before = (*cone).transmittance;
     (*cone).transmittance = before * (1.0 - stopped);
