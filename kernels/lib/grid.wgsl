@@ -1,0 +1,24 @@
+// The voxel grid: a cube of cubes, aligned with the axes of the world.
+
+struct GridValues {
+    /// Corner with the smallest coordinates, metres.
+    grid_min: vec3f,
+    /// Edge of a voxel, metres.
+    voxel_size: f32,
+}
+
+var<uniform> values: GridValues;
+
+/// World to voxels: voxel i covers [i, i + 1).
+fn to_grid(position: vec3f) -> vec3f {
+    return (position - values.grid_min) / values.voxel_size;
+}
+
+fn from_grid(position: vec3f) -> vec3f {
+    return values.grid_min + position * values.voxel_size;
+}
+
+/// Number of a voxel in a dense buffer: x fastest.
+fn voxel_number(voxel: vec3u, resolution: u32) -> u32 {
+    return (voxel.z * resolution + voxel.y) * resolution + voxel.x;
+}

@@ -1,0 +1,80 @@
+// The scene's triangles, in world space (metres).
+//
+// Cost of a corner: 1 vertex (32 B); of a triangle's record 16 B, of its instance 128 B.
+
+import lib/math;
+
+struct Vertex {
+    position: vec3f,
+    u: f32,
+    normal: vec3f,
+    v: f32,
+}
+
+/// Three indices into `vertices`, and one into `instances`.
+struct Triangle {
+    a: u32,
+    b: u32,
+    c: u32,
+    instance: u32,
+}
+
+struct Instance {
+    to_world: mat4x3f,
+    normal_to_world: mat3x3f,
+    material: u32,
+    /// -1 where `to_world` mirrors, so that the winding is reversed.
+    flip: f32,
+}
+
+/// Vertices in the space of their mesh.
+var<storage, read> vertices: array<Vertex>;
+var<storage, read> triangles: array<Triangle>;
+var<storage, read> instances: array<Instance>;
+
+/// A vertex as its triangle sees it.
+struct Corner {
+    position: vec3f,
+    normal: vec3f,
+    uv: vec2f,
+}
+
+/// A triangle in world space. Its front is where its corners run counter-clockwise, mirrored instances included.
+struct Face {
+    corners: array<Corner, 3>,
+    /// Unit length, out of the front; zero for a triangle without area.
+    normal: vec3f,
+    /// In m².
+    area: f32,
+    material: u32,
+}
+
+fn corner_position(vertex: u32, instance: u32) -> vec3f {
+    return instances[instance].to_world * vec4f(vertices[vertex].position, 1.0);
+}
+
+fn corner_of(vertex: u32, instance: u32) -> Corner {
+    let v = vertices[vertex];
+    return Corner(
+        instances[instance].to_world * vec4f(v.position, 1.0),
+        unit_or(instances[instance].normal_to_world * v.normal, vec3f(0.0)),
+        vec2f(v.u, v.v),
+    );
+}
+
+fn face_of(triangle: u32) -> Face {
+    let t = triangles[triangle];
+    let a = corner_of(t.a, t.instance);
+    let b = corner_of(t.b, t.instance);
+    let c = corner_of(t.c, t.instance);
+    let n = cross(b.position - a.position, c.position - a.position) * instances[t.instance].flip;
+    let doubled = length(n);
+    return Face(array<Corner, 3>(a, b, c), n / max(doubled, 1e-30), 0.5 * doubled, instances[t.instance].material);
+}
+
+/// The vertex that draw call vertex `index` stands for: three for each triangle, in order.
+fn vertex_of(index: u32) -> u32 {
+    let t = triangles[index / 3u];
+    let corner = index % 3u;
+    return select(select(t.c, t.b, corner == 1u), t.a, corner == 0u);
+}

@@ -1,0 +1,46 @@
+// What the voxelizer leaves in each voxel: sums over its fragments (a fragment: one triangle in one voxel), in fixed
+// point (lib/fixed), read back as means.
+//
+// A voxel takes 10 words of `sums`: count, albedo rgb, normal xyz, position within the voxel xyz.
+// Reads 4 B for an empty voxel, 40 B for a filled one.
+
+import lib/fixed;
+import lib/grid;
+
+const SUM_WORDS: u32 = 10u;
+
+var<storage, read> sums: array<u32>;
+
+/// The surface in a voxel.
+struct Surfel {
+    filled: bool,
+    albedo: vec3f,
+    /// Mean of the fragments' unit normals: shorter the less they agree, zero for two opposite faces.
+    normal: vec3f,
+    /// World space, metres; on the surface where that is flat.
+    position: vec3f,
+}
+
+fn surfel_of(voxel: vec3u, resolution: u32) -> Surfel {
+    let at = voxel_number(voxel, resolution) * SUM_WORDS;
+    let count = min(sums[at], MOST_TERMS);
+    if count == 0u {
+        return Surfel(false, vec3f(0.0), vec3f(0.0), vec3f(0.0));
+    }
+    let albedo = vec3f(
+        mean_unsigned(sums[at + 1u], count),
+        mean_unsigned(sums[at + 2u], count),
+        mean_unsigned(sums[at + 3u], count),
+    );
+    let normal = vec3f(
+        mean_signed(sums[at + 4u], count),
+        mean_signed(sums[at + 5u], count),
+        mean_signed(sums[at + 6u], count),
+    );
+    let within = vec3f(
+        mean_unsigned(sums[at + 7u], count),
+        mean_unsigned(sums[at + 8u], count),
+        mean_unsigned(sums[at + 9u], count),
+    );
+    return Surfel(true, albedo, normal, from_grid(vec3f(voxel) + within));
+}

@@ -1,0 +1,39 @@
+// Emission of each voxel from the voxelizer's sums: premultiplied radiance and opacity 1 where there is a surface.
+//
+// Every fragment counts in the mean, so that a voxel that is half lamp, half wall emits half. (A voxel has no sides:
+// emission leaves to the back too.)
+// Reads 4 B, 16 B where filled; writes one texel.
+
+import lib/fixed;
+import lib/grid;
+
+struct SceneFacts {
+    max_emission: f32,
+}
+
+var<uniform> scene: SceneFacts;
+
+/// See lib/voxel_sums: word 0 of 10 is the number of fragments.
+var<storage, read> sums: array<u32>;
+var<storage, read> emission_sums: array<u32>;
+var voxels: texture_storage_3d<rgba16float, write>;
+
+@compute @workgroup_size(4, 4, 4)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let size = textureDimensions(voxels);
+    if any(id >= size) {
+        return;
+    }
+    let number = voxel_number(id, size.x);
+    let count = min(sums[number * 10u], MOST_TERMS);
+    var value = vec4f(0.0);
+    if count > 0u {
+        let mean = vec3f(
+            mean_unsigned(emission_sums[number * 3u], count),
+            mean_unsigned(emission_sums[number * 3u + 1u], count),
+            mean_unsigned(emission_sums[number * 3u + 2u], count),
+        );
+        value = vec4f(mean * scene.max_emission, 1.0);
+    }
+    textureStore(voxels, id, value);
+}

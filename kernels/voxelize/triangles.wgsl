@@ -1,0 +1,158 @@
+// Voxelizes the scene: one thread for each triangle adds its fragments to the voxels' sums.
+//
+// Source: R 4.1.1 (triangle-parallel), tests in lib/overlap. A fragment's attributes are those of the triangle's point
+// nearest to the voxel's centre, images filtered to the width of a voxel. Corners are snapped to 1/4096 voxel: walls
+// along the axes stay planes to the last bit, so that both triangles of a wall fill the same layer.
+// Reads per thread: a triangle with 3 corners (ca. 400 B); per fragment 8 texels (×2 where it emits) for textured
+// materials; writes per fragment 10 atomic words (13). One thread walks all columns of its triangle: large triangles
+// are slow (R figure 4.6).
+
+import lib/dispatch;
+import lib/fixed;
+import lib/grid;
+import lib/material;
+import lib/nearest;
+import lib/overlap;
+import lib/scene;
+
+struct Knobs {
+    resolution: u32,
+    separability: u32,
+}
+
+var<uniform> knobs: Knobs;
+
+struct SceneFacts {
+    triangles: u32,
+    /// Largest component of the radiance that any material emits: the unit of `emission_sums`.
+    @if(scene.emissive) max_emission: f32,
+}
+
+var<uniform> scene: SceneFacts;
+
+/// 10 words a voxel: see lib/voxel_sums.
+var<storage, read_write> sums: array<atomic<u32>>;
+/// 3 words a voxel: emission rgb.
+@if(scene.emissive)
+var<storage, read_write> emission_sums: array<atomic<u32>>;
+
+struct Counters {
+    fragments: atomic<u32>,
+}
+
+var<storage, read_write> counters: Counters;
+
+var<workgroup> group_fragments: atomic<u32>;
+
+const SNAP: f32 = 4096.0;
+
+/// A triangle ready to be put into voxels.
+struct Source {
+    /// In voxels.
+    corners: array<vec3f, 3>,
+    face: Face,
+    /// Width of a voxel in uv.
+    footprint: f32,
+}
+
+fn uv_footprint(face: Face) -> f32 {
+    let u = face.corners[1].uv - face.corners[0].uv;
+    let v = face.corners[2].uv - face.corners[0].uv;
+    let area = 0.5 * abs(u.x * v.y - u.y * v.x);
+    return values.voxel_size * sqrt(area / max(face.area, 1e-30));
+}
+
+/// Returns whether there was something to add: holes of masked materials have no fragments.
+fn add_fragment(source: Source, voxel: vec3i) -> bool {
+    let weights = nearest_weights(source.corners, vec3f(voxel) + 0.5);
+    let c = source.face.corners;
+    let uv = weights.x * c[0].uv + weights.y * c[1].uv + weights.z * c[2].uv;
+    let base = base_color_at(source.face.material, uv, source.footprint);
+    if is_hole(source.face.material, base.a) {
+        return false;
+    }
+    let n = unit_or(
+        weights.x * c[0].normal + weights.y * c[1].normal + weights.z * c[2].normal,
+        source.face.normal,
+    );
+    let p = weights.x * source.corners[0] + weights.y * source.corners[1] + weights.z * source.corners[2];
+    let within = p - vec3f(voxel);
+    let number = voxel_number(vec3u(voxel), knobs.resolution);
+    let at = number * 10u;
+    if atomicAdd(&sums[at], 1u) >= MOST_TERMS {
+        return false;
+    }
+    for (var i = 0u; i < 3u; i++) {
+        atomicAdd(&sums[at + 1u + i], fixed_unsigned(base[i]));
+        atomicAdd(&sums[at + 4u + i], fixed_signed(n[i]));
+        atomicAdd(&sums[at + 7u + i], fixed_unsigned(within[i]));
+    }
+    @if(scene.emissive) {
+        let emission = emission_at(source.face.material, uv, source.footprint) / max(scene.max_emission, 1e-30);
+        for (var i = 0u; i < 3u; i++) {
+            if emission[i] > 0.0 {
+                atomicAdd(&emission_sums[number * 3u + i], fixed_unsigned(emission[i]));
+            }
+        }
+    }
+    return true;
+}
+
+fn voxelize(triangle: u32) -> u32 {
+    let face = face_of(triangle);
+    var corners: array<vec3f, 3>;
+    for (var i = 0u; i < 3u; i++) {
+        corners[i] = round(to_grid(face.corners[i].position) * SNAP) / SNAP;
+    }
+    let axis = dominant_axis(cross(corners[1] - corners[0], corners[2] - corners[1]));
+    let last = f32(knobs.resolution - 1u);
+    let low = clamp(floor(min(corners[0], min(corners[1], corners[2]))), vec3f(0.0), vec3f(last));
+    let high = clamp(floor(max(corners[0], max(corners[1], corners[2]))), vec3f(0.0), vec3f(last));
+    let first = turn(low, axis);
+    let size = turn(high - low, axis);
+    var turned: array<vec3f, 3>;
+    for (var i = 0u; i < 3u; i++) {
+        turned[i] = turn(corners[i] - low, axis);
+    }
+    let overlap = overlap_of(turned, knobs.separability == 6u);
+    if !overlap.valid {
+        return 0u;
+    }
+    let source = Source(corners, face, uv_footprint(face));
+    var fragments = 0u;
+    for (var y = 0.0; y <= size.y; y += 1.0) {
+        for (var x = 0.0; x <= size.x; x += 1.0) {
+            let p = vec2f(x, y);
+            if !inside(overlap.xy, p) {
+                continue;
+            }
+            let range = column_range(overlap, p);
+            for (var z = max(range.x, 0.0); z <= min(range.y, size.z); z += 1.0) {
+                if inside(overlap.yz, vec2f(y, z)) && inside(overlap.zx, vec2f(z, x)) {
+                    let voxel = turn_back(vec3i(first + vec3f(x, y, z)), axis);
+                    fragments += u32(add_fragment(source, voxel));
+                }
+            }
+        }
+    }
+    return fragments;
+}
+
+@compute @workgroup_size(64)
+fn main(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(num_workgroups) workgroups: vec3u,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let triangle = linear_index(id, workgroups, 64u);
+    if triangle < scene.triangles {
+        let fragments = voxelize(triangle);
+        if fragments > 0u {
+            atomicAdd(&group_fragments, fragments);
+        }
+    }
+    workgroupBarrier();
+    if local == 0u && atomicLoad(&group_fragments) > 0u {
+        atomicAdd(&counters.fragments, atomicLoad(&group_fragments));
+    }
+}
