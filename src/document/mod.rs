@@ -99,7 +99,7 @@ pub enum Allowed {
 }
 
 /// `"linear": (filter: Linear, mip_filter: Linear, wrap: Clamp, compare: Greater)`
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Sampler {
     pub filter: Filter,
     pub mip_filter: Filter,

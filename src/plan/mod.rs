@@ -12,6 +12,7 @@
 //! Stages whose condition fails are planned like the others, so that they can be listed; numbers that are out of bounds
 //! there are no errors.
 
+mod find;
 mod knobs;
 mod loops;
 mod parts;
@@ -55,6 +56,8 @@ pub struct Plan {
     pub stages: Vec<PlannedStage>,
     /// Output name → what holds it, with the place that says so.
     pub outputs: Vec<(String, Reference, Place)>,
+    /// Role → the part that plays it.
+    pub parts: BTreeMap<String, String>,
     /// Role → its WGSL module and the scope in which that module's bindings are looked up.
     pub modules: BTreeMap<String, Module>,
     /// What is wrong but does not stop the plan.
@@ -257,7 +260,7 @@ impl Plan {
 
     /// All names that can be seen from `scope`, for suggestions.
     pub fn visible(&self, scope: ScopeId) -> Vec<&str> {
-        visible(&self.scopes, scope).into_iter().map(|(name, _)| name).collect()
+        visible(&self.scopes, scope).into_keys().collect()
     }
 
     /// Where the bindings of the module in `role` are looked up for this stage.
@@ -330,6 +333,7 @@ pub fn expand(document: &Document, library: &Library, setup: &Setup) -> Result<P
     Ok(Plan {
         name: stem.unwrap_or(document.source.name()).to_owned(),
         about: document.about.value.clone(),
+        parts: players.iter().map(|p| (p.role.clone(), p.part.clone())).collect(),
         modules: modules.collect(),
         knobs: world.knobs,
         values,
