@@ -13,6 +13,7 @@
 //! there are no errors.
 
 mod knobs;
+mod later;
 mod loops;
 mod parts;
 mod reference;
@@ -21,13 +22,14 @@ mod setup;
 #[cfg(test)]
 mod tests;
 mod walk;
+mod work;
 mod world;
 
 pub use parts::SCENE_RESOURCES;
 pub use setup::{Elements, LightKind, Setup};
 pub use walk::MAX_STAGES;
 
-use crate::document::{Blend, Cause, Compare, Document, Knob, Root, Sampler};
+use crate::document::{Blend, Cause, Compare, Document, ExprText, Knob, Root, Sampler};
 use crate::expr::Value;
 use crate::library::Library;
 use crate::problem::{Place, Problems, Result};
@@ -46,6 +48,8 @@ pub struct Plan {
     /// The pipeline's name.
     pub name: String,
     pub about: String,
+    /// All features by name, as they were when planning.
+    pub features: BTreeMap<String, Value>,
     pub knobs: Vec<PlannedKnob>,
     pub values: Vec<PlannedValue>,
     pub resources: Vec<PlannedResource>,
@@ -79,6 +83,9 @@ pub struct PlannedValue {
     /// What its expression depends on, through other values too.
     pub causes: BTreeSet<Cause>,
     pub place: Place,
+    /// Its expression, and where the names in that are looked up (see [`Plan::values_with`]).
+    pub text: ExprText,
+    pub scope: ScopeId,
 }
 
 #[derive(Clone, Debug)]
@@ -257,7 +264,7 @@ impl Plan {
 
     /// All names that can be seen from `scope`, for suggestions.
     pub fn visible(&self, scope: ScopeId) -> Vec<&str> {
-        visible(&self.scopes, scope).into_iter().map(|(name, _)| name).collect()
+        visible(&self.scopes, scope).into_keys().collect()
     }
 
     /// Where the bindings of the module in `role` are looked up for this stage.
@@ -331,6 +338,7 @@ pub fn expand(document: &Document, library: &Library, setup: &Setup) -> Result<P
         name: stem.unwrap_or(document.source.name()).to_owned(),
         about: document.about.value.clone(),
         modules: modules.collect(),
+        features: world.features,
         knobs: world.knobs,
         values,
         resources,
