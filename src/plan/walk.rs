@@ -259,6 +259,9 @@ impl<'w, 'a> Walk<'w, 'a> {
 
     /// `scope` after the swaps so far.
     fn overlay(&mut self, scope: ScopeId) -> ScopeId {
+        if self.swapped.is_empty() {
+            return scope;
+        }
         let names: BTreeMap<String, Named> = super::visible(&self.world.scopes, scope)
             .into_iter()
             .filter_map(|(name, named)| match named {
