@@ -46,7 +46,7 @@ pub struct Document {
     /// What it is, in a sentence or two, with its source (document and section, or paper).
     pub about: Spanned<String>,
     pub knobs: Entries<Knob>,
-    /// Named values: small numbers or vectors computed by expressions; later ones may use earlier ones.
+    /// Named values: small numbers or vectors computed by expressions, which may use each other but not in a ring.
     pub values: Entries<String>,
     pub samplers: Entries<Sampler>,
     pub resources: Entries<Resource>,
@@ -71,7 +71,7 @@ pub enum Root {
     },
 }
 
-/// `"resolution": (default: 64, range: (8, 512), unit: "voxels", about: "…")`
+/// `"resolution": (default: 64, range: (8, 512), unit: "texels", about: "…")`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Knob {
     pub default: Spanned<Literal>,

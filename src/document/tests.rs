@@ -5,9 +5,9 @@ use proptest::prelude::*;
 const FULL: &str = r##"// A comment before.
 /* and /* nested */ one */
 Pipeline(
-    about: "Cones, trächtig mit ümlauts",
+    about: "Rays, trächtig mit ümlauts",
     knobs: {
-        "resolution": (default: 64, range: (8, 512), unit: "voxels", about: "Along one side."),
+        "resolution": (default: 64, range: (8, 512), unit: "texels", about: "Along one side."),
         "gain": (default: 0.5, range: (-1, 1e3), about: "A factor."),
         "soft": (default: true, about: "Whether."), // after
         "format": (default: "rgba8unorm", values: ["rgba8unorm", "rgba16float"], unit: Some("bits"), about: "One."),
@@ -17,15 +17,15 @@ Pipeline(
     parts: {"storage": "storage/isotropic"},
     resources: {
         "radiance": Texture(format: "format", size: ["resolution", /* why */ 16, "n"], mips: "all", start: Fill(0)),
-        "shadow": Texture(format: "depth32float", layers: "lights.spot", mips: All, start: Covered),
+        "distant": Texture(format: "depth32float", layers: "lights.spot", mips: All, start: Covered),
         "list": Buffer(count: "resolution", start: Kept(value: 1, reset: [Camera, Lights])),
         "head": Buffer(start: Kept),
     },
     stages: [
-        Compute(kernel: "voxelize/triangles", over: Count("scene.triangles"), when: "scene.emissive"),
+        Compute(kernel: "make/triangles", over: Count("scene.triangles"), when: "scene.emissive"),
         Compute(kernel: "mean", name: "mean_of", over: Texels("radiance@mip1"), bind: {"source": "radiance@mip(0)"}),
         Compute(kernel: "b", over: Indirect(buffer: "list", offset: 4), order_dependent: "running average"),
-        Raster(kernel: "c", draw: Scene, depth: (target: "shadow", compare: Greater, write: false), blend: Add),
+        Raster(kernel: "c", draw: Scene, depth: (target: "distant", compare: Greater, write: false), blend: Add),
         Raster(kernel: "d", draw: Screen), Raster(kernel: "e", draw: Points("n")),
         Raster(kernel: "f", draw: Vertices(3)), Raster(kernel: "g", draw: Indirect(buffer: "list")),
         Part(role: "storage", name: "store", when: true, bind: {"volume": "radiance"}),
@@ -181,7 +181,7 @@ fn fields_have_their_values() {
     let document = document(FULL).unwrap();
     let (_, resolution) = &document.knobs[0];
     assert_eq!(resolution.value.allowed, Allowed::Range(8.0, 512.0));
-    assert_eq!(resolution.value.unit.as_deref(), Some("voxels"));
+    assert_eq!(resolution.value.unit.as_deref(), Some("texels"));
     let (_, format) = &document.knobs[3];
     let texts = ["rgba8unorm", "rgba16float"].map(|text| Literal::Text(text.into()));
     assert_eq!(format.value.allowed, Allowed::Values(texts.into()));

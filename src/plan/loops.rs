@@ -232,15 +232,18 @@ impl<'a> Walk<'_, 'a> {
 
     /// The names of kept resources must end as they began: the next frame begins with them.
     pub fn check_kept(&self) {
-        for (id, means) in &self.swapped {
-            let [resource, other] = [id, means].map(|id| &self.world.resources[*id]);
-            if let (Start::Kept { .. }, Some(place)) =
-                (resources::start(resource.declared), self.swap_places.get(id))
-            {
-                let message = format!("`{}` is kept, but ends the frame as `{}`", resource.path, other.path);
-                let problem = Problem::input("swap-kept", message).at(place, "changes names here");
-                self.world.report(problem.help("an even number of rounds leaves the names as they were"));
-            }
+        let kept = |id: &ResourceId| {
+            matches!(resources::start(self.world.resources[*id].declared), Start::Kept { .. })
+        };
+        let moved: Vec<_> =
+            self.swap_places.iter().filter(|(id, _)| self.swapped.contains_key(id) && kept(id)).collect();
+        if moved.is_empty() {
+            return;
         }
+        let problem = Problem::input("swap-kept", "resources are kept, but end the frame under other names");
+        let problem = moved.into_iter().fold(problem, |problem, (id, place)| {
+            problem.at(place, format!("`{}` changes names here", self.world.resources[*id].path))
+        });
+        self.world.report(problem.help("an even number of rounds leaves the names as they were"));
     }
 }

@@ -14,6 +14,7 @@
 
 mod find;
 mod knobs;
+mod later;
 mod loops;
 mod parts;
 mod reference;
@@ -22,13 +23,14 @@ mod setup;
 #[cfg(test)]
 mod tests;
 mod walk;
+mod work;
 mod world;
 
 pub use parts::SCENE_RESOURCES;
 pub use setup::{Elements, LightKind, Setup};
 pub use walk::MAX_STAGES;
 
-use crate::document::{Blend, Cause, Compare, Document, Knob, Root, Sampler};
+use crate::document::{Blend, Cause, Compare, Document, ExprText, Knob, Root, Sampler};
 use crate::expr::Value;
 use crate::library::Library;
 use crate::problem::{Place, Problems, Result};
@@ -47,6 +49,8 @@ pub struct Plan {
     /// The pipeline's name.
     pub name: String,
     pub about: String,
+    /// All features by name, as they were when planning.
+    pub features: BTreeMap<String, Value>,
     pub knobs: Vec<PlannedKnob>,
     pub values: Vec<PlannedValue>,
     pub resources: Vec<PlannedResource>,
@@ -82,6 +86,9 @@ pub struct PlannedValue {
     /// What its expression depends on, through other values too.
     pub causes: BTreeSet<Cause>,
     pub place: Place,
+    /// Its expression, and where the names in that are looked up (see [`Plan::values_with`]).
+    pub text: ExprText,
+    pub scope: ScopeId,
 }
 
 #[derive(Clone, Debug)]
@@ -335,6 +342,7 @@ pub fn expand(document: &Document, library: &Library, setup: &Setup) -> Result<P
         about: document.about.value.clone(),
         parts: players.iter().map(|p| (p.role.clone(), p.part.clone())).collect(),
         modules: modules.collect(),
+        features: world.features,
         knobs: world.knobs,
         values,
         resources,

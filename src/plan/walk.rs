@@ -2,10 +2,8 @@
 
 use super::parts::Player;
 use super::world::{Live, World};
-use super::{
-    Condition, DepthUse, Draw, Element, Named, PlannedStage, Reference, ResourceId, ScopeId, Threads, Work,
-};
-use crate::document::{self, Call, Cause, Depth, ExprText, Extent, Spanned, Stage};
+use super::{Condition, Element, Named, PlannedStage, Reference, ResourceId, ScopeId, Work};
+use crate::document::{self, Call, Cause, ExprText, Spanned, Stage};
 use crate::expr::Value;
 use crate::problem::{Place, Problem};
 use std::collections::{BTreeMap, BTreeSet};
@@ -261,6 +259,9 @@ impl<'w, 'a> Walk<'w, 'a> {
 
     /// `scope` after the swaps so far.
     fn overlay(&mut self, scope: ScopeId) -> ScopeId {
+        if self.swapped.is_empty() {
+            return scope;
+        }
         let names: BTreeMap<String, Named> = super::visible(&self.world.scopes, scope)
             .into_iter()
             .filter_map(|(name, named)| match named {
@@ -290,79 +291,6 @@ impl<'w, 'a> Walk<'w, 'a> {
             }
         }
         changed
-    }
-
-    fn threads(
-        &mut self,
-        over: &Spanned<Extent>,
-        scope: ScopeId,
-        bind: &BTreeMap<String, (Reference, Place)>,
-        around: &mut Around,
-    ) -> Option<Work> {
-        Some(Work::Compute(match &over.value {
-            Extent::Texels(text) => match bind.get(&text.value) {
-                Some((reference, _)) => Threads::Texels(*reference, text.place.clone()),
-                None => Threads::Texels(self.reference(text, scope, around)?, text.place.clone()),
-            },
-            Extent::Count(counts) => {
-                let mut threads = Some([1; 3]);
-                for (axis, text) in counts.iter().enumerate() {
-                    let count = self.count(text, scope, around);
-                    threads = threads.zip(count).map(|(mut threads, count)| {
-                        threads[axis] = count;
-                        threads
-                    });
-                }
-                Threads::Count(threads)
-            }
-            Extent::Indirect { buffer, offset } => {
-                let (reference, offset) = self.indirect(buffer, offset.as_ref(), scope, around)?;
-                Threads::Indirect(reference, offset, buffer.place.clone())
-            }
-        }))
-    }
-
-    fn draw(&mut self, draw: &document::Draw, scope: ScopeId, around: &mut Around) -> Option<Draw> {
-        Some(match draw {
-            document::Draw::Scene => Draw::Scene,
-            document::Draw::Screen => Draw::Screen,
-            document::Draw::Points(count) => Draw::Points(self.count(count, scope, around)),
-            document::Draw::Vertices(count) => Draw::Vertices(self.count(count, scope, around)),
-            document::Draw::Indirect { buffer, offset } => {
-                let (reference, offset) = self.indirect(buffer, offset.as_ref(), scope, around)?;
-                Draw::Indirect(reference, offset, buffer.place.clone())
-            }
-        })
-    }
-
-    /// How many threads, points or vertices; with none of them, the stage's condition fails.
-    fn count(&self, text: &ExprText, scope: ScopeId, around: &mut Around) -> Option<u64> {
-        let count = self.world.whole(text, scope, 0, around.live());
-        if count == Some(0) {
-            let none = Condition::Fails(format!("count {} is 0", text.value.trim()));
-            around.condition = around.condition.and(none);
-        }
-        count.filter(|count| *count > 0)
-    }
-
-    fn indirect(
-        &mut self,
-        buffer: &Spanned<String>,
-        offset: Option<&ExprText>,
-        scope: ScopeId,
-        around: &Around,
-    ) -> Option<(Reference, u64)> {
-        let offset = offset.map_or(Some(0), |offset| self.world.whole(offset, scope, 0, around.live()));
-        Some((self.reference(buffer, scope, around)?, offset.unwrap_or(0)))
-    }
-
-    fn depth(&mut self, depth: &Depth, scope: ScopeId, around: &Around) -> Option<DepthUse> {
-        Some(DepthUse {
-            target: self.reference(&depth.target, scope, around)?,
-            place: depth.target.place.clone(),
-            compare: depth.compare,
-            write: depth.write,
-        })
     }
 
     /// The stages of the part in a role, with private resources of this call's own.

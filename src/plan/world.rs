@@ -64,7 +64,7 @@ const BUFFER_FACTS: [&str; 1] = ["count"];
 
 pub(super) struct World<'a> {
     pub setup: &'a Setup,
-    features: BTreeMap<String, Value>,
+    pub features: BTreeMap<String, Value>,
     pub knobs: Vec<PlannedKnob>,
     values: Vec<LazyValue<'a>>,
     pub resources: Vec<LazyResource<'a>>,
@@ -125,7 +125,14 @@ impl<'a> World<'a> {
     pub fn planned_values(&self) -> Vec<PlannedValue> {
         let planned = |(index, lazy): (usize, &LazyValue<'a>)| {
             let (value, causes) = self.named_value(index);
-            PlannedValue { path: lazy.path.clone(), value, causes, place: lazy.place.clone() }
+            PlannedValue {
+                path: lazy.path.clone(),
+                value,
+                causes,
+                place: lazy.place.clone(),
+                text: lazy.text.clone(),
+                scope: lazy.scope,
+            }
         };
         self.values.iter().enumerate().map(planned).collect()
     }
@@ -279,19 +286,20 @@ impl<'a> World<'a> {
             None => &[],
         }
     }
+}
 
-    fn fact(&self, id: ResourceId, fact: &str) -> Value {
-        let number = match (self.resource(id).0, fact) {
-            (ResourceKind::Texture { size, .. }, "width") => size.map(|size| size[0].into()),
-            (ResourceKind::Texture { size, .. }, "height") => size.map(|size| size[1].into()),
-            (ResourceKind::Texture { size, .. }, "depth") => size.map(|size| size[2].into()),
-            (ResourceKind::Texture { mips, .. }, "mips") => mips.map(u64::from),
-            (ResourceKind::Texture { layers, .. }, _) => layers.map(u64::from),
-            (ResourceKind::Buffer { count }, _) => count,
-            (ResourceKind::Scene, _) => None,
-        };
-        number.map_or(Value::Unknown, |number| Value::Number(number as f64))
-    }
+/// A number that describes a resource; unknown where it has none of that name.
+pub(super) fn fact(kind: &ResourceKind, name: &str) -> Value {
+    let number = match (kind, name) {
+        (ResourceKind::Texture { size, .. }, "width") => size.map(|size| size[0].into()),
+        (ResourceKind::Texture { size, .. }, "height") => size.map(|size| size[1].into()),
+        (ResourceKind::Texture { size, .. }, "depth") => size.map(|size| size[2].into()),
+        (ResourceKind::Texture { mips, .. }, "mips") => mips.map(u64::from),
+        (ResourceKind::Texture { layers, .. }, "layers") => layers.map(u64::from),
+        (ResourceKind::Buffer { count }, "count") => *count,
+        _ => None,
+    };
+    number.map_or(Value::Unknown, |number| Value::Number(number as f64))
 }
 
 /// The names of one scope, as expressions see them.
@@ -305,7 +313,7 @@ impl Names for View<'_, '_> {
         Some(match self.world.find(self.scope, name)? {
             Found::Ready(value) | Found::Feature(value, _) => value.clone(),
             Found::Value(index) => self.world.named_value(index).0,
-            Found::Fact(resource, fact) => self.world.fact(resource, fact),
+            Found::Fact(resource, name) => fact(&self.world.resource(resource).0, name),
         })
     }
 

@@ -44,11 +44,7 @@ fn knobs() {
         ("default: «1», values: [1, 1.5]", "bad-knob"),
         ("default: «true», values: [true, 1]", "bad-knob"),
     ] {
-        errs(
-            &format!("knobs: {{\n\"ü\u{308}\": 1}}")
-                .replace("ü\u{308}\": 1", &format!("k\": ({knob}, about: \"\")")),
-            code,
-        );
+        errs(&format!("knobs: {{\n\"k\": ({knob}, about: \"\")}}"), code);
     }
 }
 
@@ -246,7 +242,7 @@ fn parts() {
     );
     errs_with(r#"parts: {"b": "q"}, values: {"x": 1}"#, &both[1..], &setup(), "duplicate-name");
     let source = Source::new("part.ron", part);
-    let document = document::parse(&source).unwrap();
+    let document = crate::document::parse(&source).unwrap();
     let found = expand(&document, &Library::default(), &setup()).unwrap_err();
     assert_eq!(found.iter().map(|problem| problem.code).collect::<Vec<_>>(), ["not-a-pipeline"]);
     for (role, name, code, piece) in [("b", "p", "unknown-role", "b"), ("a", "gone", "unknown-part", "gone")]

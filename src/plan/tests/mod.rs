@@ -40,8 +40,8 @@ fn features(features: &[(&str, Value)]) -> BTreeMap<String, Value> {
     features.iter().map(|(name, value)| ((*name).to_owned(), value.clone())).collect()
 }
 
-/// Plans `Pipeline(about: "", …)` with the fields `text`, and parts by name.
-fn try_plan(text: &str, parts: &[(&str, &str)], setup: &Setup) -> Result<Plan> {
+/// A library with these parts, in a folder that lives as long as what is returned.
+fn library(parts: &[(&str, &str)]) -> (tempfile::TempDir, Library) {
     let folder = tempfile::tempdir().unwrap();
     for (name, part) in parts {
         let file = folder.path().join(format!("pipelines/parts/{name}.ron"));
@@ -49,8 +49,17 @@ fn try_plan(text: &str, parts: &[(&str, &str)], setup: &Setup) -> Result<Plan> {
         std::fs::write(file, part).unwrap();
     }
     let library = Library::new(vec![folder.path().to_owned()]).unwrap();
-    let document = document::parse(&Source::new("test.ron", format!("Pipeline(about: \"\",\n{text})")))?;
-    expand(&document, &library, setup)
+    (folder, library)
+}
+
+/// `Pipeline(about: "", …)` with the fields `text`.
+fn document(text: &str) -> Result<Document> {
+    document::parse(&Source::new("test.ron", format!("Pipeline(about: \"\",\n{text})")))
+}
+
+fn try_plan(text: &str, parts: &[(&str, &str)], setup: &Setup) -> Result<Plan> {
+    let (_folder, library) = library(parts);
+    expand(&document(text)?, &library, setup)
 }
 
 #[track_caller]

@@ -90,6 +90,28 @@ fn values_know_what_they_depend_on() {
     assert_eq!(shown("all"), ("unknown".into(), [Frame, Geometry, Lights, Camera].into()));
 }
 
+#[test]
+fn values_follow_the_frame() {
+    let text = r#"knobs: {"n": (default: 4, range: (1, 8), about: "")},
+        resources: {"t": Texture(format: "r32float", size: ["n", 8], start: Covered)}, values: {
+        "sum": "snapped.x + fixed + frame.index", "snapped": "floor(camera.position / 2) * 2",
+        "fixed": "t.height + output.width + n", "inverse": "1 / camera.position.y"}"#;
+    let plan = plan(text);
+    let shown = |values: Vec<Value>| values.iter().map(Value::to_string).collect::<Vec<_>>();
+    let moved = |y: f64| {
+        features(&[
+            ("camera.position", Value::Vector(vec![7.0, y, 0.0])),
+            ("frame.index", Value::Number(3.0)),
+        ])
+    };
+    assert_eq!(
+        shown(plan.values_with(&BTreeMap::new()).unwrap()),
+        ["unknown", "vec3(0, 2, 2)", "652", "0.5"]
+    );
+    assert_eq!(shown(plan.values_with(&moved(4.0)).unwrap()), ["661", "vec3(6, 4, 0)", "652", "0.25"]);
+    assert_eq!(plan.values_with(&moved(0.0)).map_err(|problem| problem.code), Err("division-by-zero"));
+}
+
 const STORAGE: &str = r#"Part(about: "", role: "storage", module: "storage/isotropic", exports: ["radiance", "cell", "side"],
     knobs: {"side": (default: 32, range: (1, 64), about: ""), "gain": (default: 1, range: (0, 2), about: "")},
     values: {"cell": "size / side", "inner": "cell * gain"},
