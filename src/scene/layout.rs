@@ -77,7 +77,7 @@ pub struct Light {
     pub first_view: u32,
     /// W/sr; for a directional light W/m² on a surface that faces it.
     pub intensity: Vec3,
-    /// Cosine of the half angle of a spot's cone; −1 for other lights.
+    /// Cosine of the half angle that a spot's light fills; −1 for other lights.
     pub cos_outer: f32,
     /// Cosine of the half angle within which a spot has its full intensity; −1 for other lights.
     pub cos_inner: f32,
@@ -105,7 +105,7 @@ pub struct View {
     /// Metres from `position` along `direction`.
     pub near: f32,
     pub far: f32,
-    /// Width of the view in metres, at unit distance if it is a perspective; divided by a map's resolution it is the
+    /// Width of the view in metres, at unit distance if it is a perspective; divided by a picture's resolution it is the
     /// width of a texel.
     pub texel: f32,
     pub pad: u32,

@@ -19,7 +19,7 @@ pub fn point(position: DVec3, intensity: Vec3) -> Result<Light, String> {
     })
 }
 
-/// `direction`: of travel. `intensity`: W/sr. `inner`, `outer`: half angles of the cone in radians.
+/// `direction`: of travel. `intensity`: W/sr. `inner`, `outer`: half angles of its light in radians.
 pub fn spot(
     position: DVec3,
     direction: DVec3,
@@ -30,7 +30,7 @@ pub fn spot(
     if !(inner >= 0.0 && inner < outer && outer <= FRAC_PI_2 + 1e-6) {
         let degrees = [inner, outer].map(f64::to_degrees);
         return Err(format!(
-            "the cone's half angles must grow from inner ({}°) to outer ({}°) within 0° to 90°",
+            "the spot's half angles must grow from inner ({}°) to outer ({}°) within 0° to 90°",
             degrees[0], degrees[1]
         ));
     }

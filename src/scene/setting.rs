@@ -14,7 +14,7 @@
 //!
 //! The file is looked for beside the setting and below, then likewise in the folder that the environment variable
 //! `VOXGI_SCENES` names. `fov_degrees` is the full vertical angle, the degrees of a spot are half angles of its
-//! cone, a direction is the one in which light travels. The setting's lights and cameras come before the file's.
+//! light, a direction is the one in which light travels. The setting's lights and cameras come before the file's.
 
 use super::camera::Camera;
 use super::gltf;

@@ -1,7 +1,7 @@
 //! The container: the JSON document, and the bytes that a binary glTF carries beside it.
 
 use super::notes::Fault;
-use gltf::json::deserialize::{from_slice, from_value};
+use gltf::json::deserialize::from_slice;
 use gltf::json::{Error, Root, Value};
 
 /// The JSON text and the binary chunk of a file's content; the content itself if it is no binary glTF.
@@ -60,7 +60,7 @@ fn parse_tidied(json: &[u8]) -> Option<Root> {
     for animation in document.get_mut("animations").and_then(Value::as_array_mut).into_iter().flatten() {
         *animation = serde_json::json!({"channels": [], "samplers": []});
     }
-    from_value(document).ok()
+    from_slice(&serde_json::to_vec(&document).ok()?).ok()
 }
 
 fn make_integers(value: &mut Value) {
