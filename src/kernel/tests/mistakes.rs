@@ -134,7 +134,9 @@ fn files_that_would_run_into_the_next_one() {
 fn what_would_run_out_of_stack_is_too_long() {
     let many = |before: &str, piece: &str, after: &str| format!("{before}{}{after}", piece.repeat(50_000));
     assert_eq!(in_main(&many("fn f() { let x = ", "(", "")).0, "bracket");
+    let level = format!("f(0, {}", "1 + ".repeat(50));
     for text in [
+        format!("fn f() {{ {}1{}; }}", level.repeat(20), ")".repeat(20)),
         many("fn f() { let x = ", "!", "true; }"),
         many("fn f() { let x = 1", " + 1", "; }"),
         many("fn f() { var y = 1; let x = y", "[0]", "; }"),
