@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! import lib/sampling;              the file kernels/lib/sampling.wgsl
-//! import role/storage;              the file that the pipeline names for the role `storage`
+//! import role/material;             the file that the pipeline names for the role `material`
 //! @if(lights.total > 0) var …       kept if the condition holds or can't be decided yet
 //! @elif(…) … @else …                the other cases, directly after it
 //! ```
@@ -22,6 +22,11 @@ use crate::problem::{Place, Problem, Problems, Result, Source};
 use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
+
+/// How many imports deep a file may be.
+const DEEPEST: usize = 64;
+/// How many declarations a kernel may have with its imports: naga follows chains of them by recursion.
+const MOST_DECLARATIONS: usize = 2000;
 
 /// A kernel and its imports as one text of WGSL without binding numbers.
 #[derive(Clone, Debug)]
@@ -164,6 +169,13 @@ impl Loader<'_> {
             }
             return;
         }
+        if self.open.len() >= DEEPEST {
+            self.problems.push(
+                Problem::input("deep-imports", format!("imports go more than {DEEPEST} files deep"))
+                    .at(at, "this one"),
+            );
+            return;
+        }
         let source = match self.library.find(Shelf::Kernels, kernel) {
             Ok(source) => source,
             Err(problem) => {
@@ -206,6 +218,11 @@ impl Loader<'_> {
 
     fn declarations(&mut self) -> BTreeMap<String, Declared> {
         let mut all: BTreeMap<String, Declared> = BTreeMap::new();
+        let mut each = self.files.iter().flat_map(|file| &file.scan.declarations);
+        if let Some(declaration) = each.nth(MOST_DECLARATIONS) {
+            let message = format!("a kernel with more than {MOST_DECLARATIONS} declarations");
+            self.problems.push(Problem::input("too-long", message).at(&declaration.place, "one too many"));
+        }
         for file in &self.files {
             for declaration in &file.scan.declarations {
                 let name = &declaration.name;

@@ -108,7 +108,6 @@ impl<'a> Reader<'a> {
     fn bindings(&self) -> Result<Vec<Binding>> {
         let filtered: BTreeSet<_> = (0..self.module.entry_points.len())
             .flat_map(|i| &self.info.get_entry_point(i).sampling_set)
-            .filter(|pair| !self.is_comparison(pair.sampler))
             .map(|pair| pair.image)
             .collect();
         let mut problems = Vec::new();
@@ -121,11 +120,6 @@ impl<'a> Reader<'a> {
         }
         Problems::check(problems)?;
         Ok(bindings)
-    }
-
-    fn is_comparison(&self, sampler: Handle<GlobalVariable>) -> bool {
-        let ty = self.module.global_variables[sampler].ty;
-        matches!(self.module.types[ty].inner, TypeInner::Sampler { comparison: true })
     }
 
     fn entries(&self) -> Result<Vec<Entry>> {

@@ -308,18 +308,19 @@ impl Walk<'_> {
     }
 }
 
-/// The `//` comment on the lines that end above the byte `at`, without its slashes. The comment at the very top of a
-/// file is the file's own.
+/// The `//` comment on the lines right above the byte `at`, if nothing else stands before it on its own line. Without
+/// its slashes. The comment at the very top of a file is the file's own.
 fn comment_above(text: &str, at: usize) -> String {
-    let line_start = text[..at].rfind('\n').map_or(0, |i| i + 1);
     let mut lines = Vec::new();
-    let mut above = &text[..line_start];
-    while let Some(line) = above.lines().next_back().and_then(comment_line) {
-        lines.push(line);
-        above = above.strip_suffix('\n').map_or("", |rest| &rest[..rest.rfind('\n').map_or(0, |i| i + 1)]);
-        if above.is_empty() {
+    let mut above = text[..at].trim_end_matches([' ', '\t']);
+    while let Some(rest) = above.strip_suffix('\n') {
+        let start = rest.rfind('\n').map_or(0, |i| i + 1);
+        let Some(line) = comment_line(&rest[start..]) else { break };
+        if start == 0 {
             return String::new();
         }
+        lines.push(line);
+        above = &rest[..start];
     }
     lines.reverse();
     lines.join("\n")

@@ -6,8 +6,11 @@
 use crate::problem::{Place, Problem, Source};
 use std::ops::Range;
 
-/// How deep brackets may nest: beyond it naga gives up, too, and nothing here may run out of stack.
+/// How deep brackets may nest, for what follows them by recursion: this module's users, and naga.
 const DEEPEST: usize = 120;
+/// How many tokens may follow each other without a `,` or `;`, counted through all brackets that are open: a chain of
+/// operators, members or `else if` is recursion as well, and naga has no limit of its own there.
+const LONGEST: usize = 1000;
 /// What ends a `//` comment.
 const LINE_ENDS: [char; 7] = ['\n', '\u{b}', '\u{c}', '\r', '\u{85}', '\u{2028}', '\u{2029}'];
 
@@ -152,19 +155,39 @@ fn block_comment(text: &str) -> Option<usize> {
     None
 }
 
+/// A bracket that is not closed yet.
+struct Open {
+    token: usize,
+    /// The length of the run of tokens at it.
+    run: usize,
+}
+
+/// Pairs the brackets, and sees to it that nothing is too deep.
 fn match_brackets(source: &Source, list: &mut [Token]) -> Result<(), Problem> {
-    let mut open: Vec<usize> = Vec::new();
+    let mut open: Vec<Open> = Vec::new();
+    let mut run = 0;
     let wrong = |token: Token, message: String| {
         Problem::input("bracket", message).at(&source.at(token.start..token.end), "this one")
     };
     for i in 0..list.len() {
+        run += 1;
+        if run > LONGEST {
+            let message = format!("more than {LONGEST} words and signs without a `,` or `;`");
+            return Err(Problem::input("too-long", message)
+                .at(&source.at(list[i].start..list[i].end), "it goes on from here")
+                .help("split the expression: `let` gives a name to a part of it"));
+        }
         let Kind::Sign(sign) = list[i].kind else { continue };
         let opening = match sign {
             '(' | '[' | '{' if open.len() >= DEEPEST => {
                 return Err(wrong(list[i], format!("brackets are nested more than {DEEPEST} deep")));
             }
             '(' | '[' | '{' => {
-                open.push(i);
+                open.push(Open { token: i, run });
+                continue;
+            }
+            ',' | ';' => {
+                run = open.last().map_or(0, |open| open.run);
                 continue;
             }
             ')' => '(',
@@ -173,11 +196,14 @@ fn match_brackets(source: &Source, list: &mut [Token]) -> Result<(), Problem> {
             _ => continue,
         };
         match open.pop() {
-            Some(j) if list[j].kind == Kind::Sign(opening) => {
+            Some(Open { token: j, run: before }) if list[j].kind == Kind::Sign(opening) => {
                 list[j].partner = i;
                 list[i].partner = j;
+                let goes_on = sign != '}'
+                    || list.get(i + 1).is_some_and(|next| source.text()[next.start..].starts_with("else"));
+                run = if goes_on { before } else { open.last().map_or(0, |open| open.run) };
             }
-            Some(j) => {
+            Some(Open { token: j, .. }) => {
                 let before = source.at(list[j].start..list[j].end);
                 let problem = wrong(list[i], format!("`{sign}` closes no `{opening}`"));
                 return Err(problem.at(&before, "this one is still open"));
@@ -186,7 +212,7 @@ fn match_brackets(source: &Source, list: &mut [Token]) -> Result<(), Problem> {
         }
     }
     match open.pop() {
-        Some(j) => {
+        Some(Open { token: j, .. }) => {
             let sign = &source.text()[list[j].start..list[j].end];
             Err(wrong(list[j], format!("this `{sign}` is never closed")))
         }

@@ -23,13 +23,14 @@ pub struct Variants {
 }
 
 impl Variants {
-    /// As [`reflect`], once for each text and values.
+    /// As [`reflect`], once for each text and values of what it declares.
     pub fn reflect(
         &mut self,
         composed: &Composed,
         overrides: &BTreeMap<String, f64>,
     ) -> Result<Arc<Reflected>> {
-        let values = overrides.iter().map(|(name, value)| (name.clone(), value.to_bits())).collect();
+        let known = overrides.iter().filter(|(name, _)| composed.declarations.contains_key(*name));
+        let values = known.map(|(name, value)| (name.clone(), value.to_bits())).collect();
         let key = (composed.text.clone(), composed.segments.clone(), values);
         if let Some(known) = self.reflected.get(&key) {
             return Ok(known.clone());

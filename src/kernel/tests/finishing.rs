@@ -140,12 +140,12 @@ fn an_effect_that_is_dropped_leaves_no_binding_function_or_instruction_behind() 
             @if(lit) { for (var i = 0u; i < 4; i++) { color += lamp(i + lane); } }
             image[id.x] = color;
         }";
-    let light = "@if(shadowed) var shadow: texture_depth_2d;
-        struct Lamp { color: vec4f, @if(shadowed) layer: u32, }
+    let light = "@if(faded) var fade: texture_depth_2d;
+        struct Lamp { color: vec4f, @if(faded) layer: u32, }
         var<storage> lamps: array<Lamp>;
         fn lamp(i: u32) -> vec4f {
             var color = lamps[i].color;
-            @if(shadowed) color *= textureLoad(shadow, vec2u(lamps[i].layer), 0);
+            @if(faded) color *= textureLoad(fade, vec2u(lamps[i].layer), 0);
             return color;
         }";
     let without = "
@@ -154,8 +154,8 @@ fn an_effect_that_is_dropped_leaves_no_binding_function_or_instruction_behind() 
             var color = vec4f(0.5);
             image[id.x] = color;
         }";
-    let program = |files: &[(&str, &str)], lit, shadowed| {
-        let names = known(&[("lit", Value::Flag(lit)), ("shadowed", Value::Flag(shadowed))]);
+    let program = |files: &[(&str, &str)], lit, faded| {
+        let names = known(&[("lit", Value::Flag(lit)), ("faded", Value::Flag(faded))]);
         let composed = Files::new(files).compose(&[], &names).unwrap();
         finish(&reflect(&composed, &BTreeMap::new()).unwrap(), &["shade"], &Choice::default()).unwrap()
     };
@@ -172,7 +172,7 @@ fn an_effect_that_is_dropped_leaves_no_binding_function_or_instruction_behind() 
     let (full, plain, dark) =
         (program(&files, true, true), program(&files, true, false), program(&files, false, true));
     let never = program(&[("main", without)], false, false);
-    assert_eq!(names(&full), ["shadow", "lamps", "image"]);
+    assert_eq!(names(&full), ["fade", "lamps", "image"]);
     assert_eq!(names(&plain), ["lamps", "image"]);
     assert_eq!(names(&dark), ["image"]);
     assert!(size(&full).2 > size(&plain).2 && size(&plain).2 > size(&dark).2);

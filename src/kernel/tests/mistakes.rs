@@ -128,8 +128,34 @@ fn files_that_would_run_into_the_next_one() {
     ] {
         assert_eq!(in_main(text), (code, at("main.wgsl", 1, column, marked)), "{text}");
     }
-    let deep = format!("fn f() {{ let x = {}1{}; }}", "(".repeat(50_000), ")".repeat(50_000));
-    assert_eq!(in_main(&deep).0, "bracket");
+}
+
+#[test]
+fn what_would_run_out_of_stack_is_too_long() {
+    let many = |before: &str, piece: &str, after: &str| format!("{before}{}{after}", piece.repeat(50_000));
+    assert_eq!(in_main(&many("fn f() { let x = ", "(", "")).0, "bracket");
+    let level = format!("f(0, {}", "1 + ".repeat(50));
+    for text in [
+        format!("fn f() {{ {}1{}; }}", level.repeat(20), ")".repeat(20)),
+        many("fn f() { let x = ", "!", "true; }"),
+        many("fn f() { let x = 1", " + 1", "; }"),
+        many("fn f() { var y = 1; let x = y", "[0]", "; }"),
+        many("fn f() { if true {}", " else if true { return; }", "}"),
+        many("fn f() { f(1, 2 + ", "!", "true); }"),
+        many("const A0 = 1; ", "\n", "").replace('\n', "const X = 1;"),
+    ] {
+        let problems = Files::new(&[("main", &text)]).compose(&[], &known(&[])).map(|_| ()).unwrap_err();
+        assert!(codes(&problems).contains(&"too-long"), "{}", &text[..40]);
+    }
+    let table = many("const TABLE = array(", "vec3f(1.0, 2.0, 3.0) + 1, ", "1); fn f() { ")
+        + &"if true {} ".repeat(2000)
+        + "}";
+    assert!(Files::new(&[("main", &table)]).compose(&[], &known(&[])).is_ok());
+    let chain: Vec<(String, String)> =
+        (0..100).map(|i| (format!("k{i}"), format!("import k{};", i + 1))).collect();
+    let chain: Vec<(&str, &str)> = chain.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
+    let files = [&[("main", "import k0;")], &chain[..]].concat();
+    assert_eq!(problem(&files).code, "deep-imports");
 }
 
 #[test]

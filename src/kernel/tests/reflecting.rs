@@ -19,7 +19,7 @@ var<storage, read_write> counters: Counters;
 var albedo: texture_2d_array<f32>;
 var ids: texture_2d<u32>;
 var volume: texture_3d<f32>;
-var shadow: texture_depth_2d_array;
+var depths: texture_depth_2d_array;
 var faces: texture_cube<f32>;
 var samples: texture_multisampled_2d<f32>;
 var smooth_: sampler;
@@ -35,7 +35,7 @@ var<workgroup> shared_: array<u32, 4>;
     atomicStore(&counters.written, 1u);
     var sum = textureSampleLevel(albedo, smooth_, vec2f(), 0, 0.0).xyz + tint + vertices[id.x];
     sum += textureLoad(volume, id, 0).xyz + textureSampleLevel(faces, smooth_, sum, 0.0).xyz;
-    sum += vec3f(textureSampleCompareLevel(shadow, compare, vec2f(), 0, 0.5));
+    sum += vec3f(textureSampleCompareLevel(depths, compare, vec2f(), 0, 0.5));
     sum += textureLoad(samples, id.xy, 0).xyz + vec3f(textureLoad(ids, id.xy, 0).xyz);
     textureStore(target_, id, vec4f(sum, 1.0));
     textureStore(sums, id.xy, textureLoad(sums, id.xy) + 1);
@@ -58,7 +58,7 @@ fn kind(reflected: &Reflected, name: &str) -> BindingKind {
 fn every_kind_of_binding() {
     let reflected = reflected(EVERYTHING);
     let names: Vec<&str> = reflected.bindings.iter().map(|binding| binding.name.as_str()).collect();
-    let all = "knobs tint grid vertices counters albedo ids volume shadow faces samples smooth_ compare target_ sums";
+    let all = "knobs tint grid vertices counters albedo ids volume depths faces samples smooth_ compare target_ sums";
     assert_eq!(names, all.split(' ').collect::<Vec<_>>());
     assert_eq!(
         (reflected.bindings[0].about.as_str(), reflected.bindings[0].place.text()),
@@ -97,7 +97,7 @@ fn every_kind_of_binding() {
     assert_eq!(kind("albedo"), texture(TextureViewDimension::D2Array, float(true)));
     assert_eq!(kind("ids"), texture(TextureViewDimension::D2, TextureSampleType::Uint));
     assert_eq!(kind("volume"), texture(TextureViewDimension::D3, float(false)));
-    assert_eq!(kind("shadow"), texture(TextureViewDimension::D2Array, TextureSampleType::Depth));
+    assert_eq!(kind("depths"), texture(TextureViewDimension::D2Array, TextureSampleType::Depth));
     assert_eq!(kind("faces"), texture(TextureViewDimension::Cube, float(true)));
     let multisampled = BindingKind::Texture {
         dimension: TextureViewDimension::D2,
@@ -126,7 +126,7 @@ fn uses_and_pairs_of_an_entry_point() {
     assert_eq!(of(true, true), ["grid", "sums"]);
     assert_eq!(of(true, false).len(), 11);
     let pairs: Vec<_> = entry.sampled.iter().map(|(image, sampler)| (name(*image), name(*sampler))).collect();
-    assert_eq!(pairs, [("albedo", "smooth_"), ("shadow", "compare"), ("faces", "smooth_")]);
+    assert_eq!(pairs, [("albedo", "smooth_"), ("depths", "compare"), ("faces", "smooth_")]);
 }
 
 #[test]
