@@ -102,7 +102,11 @@ impl Names for ScopeNames<'_> {
         match self.plan.lookup(self.scope, name) {
             Some(Named::Knob(index)) => self.plan.knobs.get(*index).map(|k| k.value.clone()),
             Some(Named::Index(value)) => Some(value.clone()),
-            _ => self.features.get(name).cloned(),
+            // A part's knob by its whole path.
+            _ => match self.plan.knobs.iter().find(|k| k.path == name) {
+                Some(knob) => Some(knob.value.clone()),
+                None => self.features.get(name).cloned(),
+            },
         }
     }
 

@@ -73,7 +73,9 @@ fn player(role: &str, part: &str, place: &Place, library: &Library) -> Result<Pl
     let source = library.find(Shelf::Parts, part).map_err(|problem| problem.at(place, "put in here"))?;
     let document = document::parse(&source)?;
     match &document.root {
-        Root::Part { role: own, .. } if own.value == role => Ok(Player { role: role.to_owned(), part: part.to_owned(), document }),
+        Root::Part { role: own, .. } if own.value == role => {
+            Ok(Player { role: role.to_owned(), part: part.to_owned(), document })
+        }
         Root::Part { role: own, .. } => {
             let message = format!("the part `{part}` plays the role `{}`, not `{role}`", own.value);
             Err(Problem::input("wrong-role", message)

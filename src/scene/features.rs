@@ -61,6 +61,8 @@ features! { scene, used;
     "scene.min" Vector "Least corner of the box around all triangles, in metres." = vector(scene.bounds.min);
     "scene.max" Vector "Greatest corner of the box around all triangles, in metres." = vector(scene.bounds.max);
     "scene.emissive" Flag "Some triangle gives off light." = used.iter().any(|m| m.emission != Vec3::ZERO);
+    "scene.max_emission" Number "Greatest emission of a triangle's material in a colour, W/(sr·m²); 0 without."
+        = used.iter().fold(0.0, |greatest, m| f64::from(m.emission.max_element()).max(greatest));
     "scene.textured" Flag "Some triangle has an image for its colour or its emission."
         = used.iter().any(|m| m.base_color_image.y > 0 || m.emission_image.y > 0);
     "scene.masked" Flag "Some triangle has holes where its alpha is low."
