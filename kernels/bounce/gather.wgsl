@@ -1,7 +1,8 @@
 // One more scattering in the voxels: what the surface in each voxel reflects of the light that voxels reflected so far.
 //
-// Source: R 6.4 (eq. 6.14: ρ/π Σ W L), for voxels instead of pixels. With T this operator and L₁ the first scattering, n rounds of L ← L₁ + T L give the
-// first n + 1 scatterings. The weights sum to at most π and opacities to 1, so that T's gain is at most the albedo.
+// Source: R 6.4 (eq. 6.14: ρ/π Σ W L), for voxels instead of pixels. With T this operator and L₁ the first scattering,
+// n rounds of L ← L₁ + T L give the first n + 1 scatterings. The weights sum to at most π and opacities to 1, so that
+// T's gain is at most the albedo.
 // Reads per filled voxel: 40 B and 12 cones; writes one texel.
 
 import lib/hemisphere;

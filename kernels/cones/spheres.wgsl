@@ -1,15 +1,22 @@
 // Module of the role `cones`: where a cone is sampled, and how what it meets adds up.
 //
 // Source: R 6.1 (tangent spheres: radius = distance · sin(aperture/2)), start shifted along the normal (R 6.1.1), and
-// one correction of our own. A cone that leaves a plane at a slant meets that very plane again in the coarse levels: a
-// level with voxels of size s holds the plane smeared over ±1.5 s (box of the mean, tent of the filter). Integrated
-// along R's 60° side cones, where s = d and the height is d/2, that is an optical depth of 0.35 for each doubling of d,
-// and 3/4 of the light of an open plain would be its own. So the sampled size is bounded by the height above the
-// surface's plane: s ≤ height / (1.5 |n|₁). The first sample needs the height ½ |n|_∞ + |n|₁ (in voxels), which clears a thin
-// surface at the finest level with trilinear filtering, and 1.5 |n|₁ clears a conservative one.
+// two corrections of our own.
+//
+// A cone that leaves a plane at a slant meets that very plane again in the coarse levels: a level with voxels of size s
+// holds the plane smeared over ±1.5 s (box of the mean, tent of the filter). Along R's 60° side cones, where s = d and
+// the height is d/2, that is an optical depth of 0.35 for each doubling of d, and most of what an open plain sees would
+// be itself. So the sampled size is bounded by the height above the surface's plane: s ≤ height / (1.5 √2 |n|₁); √2
+// because between two levels the coarser one, up to √2 s at equal weights, is blended in. An open plane then lights
+// itself by 0.2 % of its radiance and less. The start is lifted by 1.5 |n|₁ voxels, which clears the surface's own
+// voxels at the finest level, conservative ones too.
+//
+// A mean of opacities treats what it holds as dust, spread at random: a wall of one voxel in a block of 2^k has
+// the mean 2^-k and lets (1 - 2^-k)^(2^k) ≈ 1/e through. `cone_density` is how much denser than dust coarse voxels are
+// taken to be: exp(-density) then gets through. It fades in with the level, since the finest holds walls as they are.
 //
 // A cone is cut into steps of `cone_step` sampled sizes, sampled in their middle. Sizes never fall below a voxel.
-// For a grid of 64³: 12 to 17 steps for each cone to the other side of the grid.
+// Across a grid of 64³: about 10 steps along the normal, 14 for each of the other cones.
 
 import role/mipmap;
 import lib/grid;
@@ -20,7 +27,7 @@ struct ConeKnobs {
     step: f32,
     /// Sampled size over the cone's diameter.
     footprint: f32,
-    /// How much more a coarse voxel stops than independent small ones would.
+    /// How much denser than dust coarse voxels are.
     density: f32,
 }
 
@@ -44,10 +51,12 @@ struct Cone {
     transmittance: f32,
 }
 
-const SLOPE_60: f32 = 1.0; // 2 sin(60°/2): diameter over distance
+const LIFT: f32 = 1.5;
+const CLEARANCE: f32 = 2.1213; // 1.5 √2
+/// Shading normals can aim a cone along the plane or below it; sizes grow as if it rose this much.
 const LEAST_RISE: f32 = 0.25;
 const LEAST_TRANSMITTANCE: f32 = 0.001;
-const MOST_STEPS: u32 = 160u;
+const MOST_STEPS: u32 = 512u;
 
 /// Distance along `direction` to where the grid ends.
 fn grid_exit(origin: vec3f, direction: vec3f, resolution: f32) -> f32 {
@@ -60,14 +69,14 @@ fn grid_exit(origin: vec3f, direction: vec3f, resolution: f32) -> f32 {
 
 /// A 60° cone from a point (world) of a surface with unit normal `n` on the side where the cone starts.
 fn cone_begin(position: vec3f, n: vec3f, direction: vec3f, resolution: f32) -> Cone {
-    let lift = 1.5 * norm_1(n);
+    let lift = LIFT * norm_1(n);
     let origin = to_grid(position) + n * lift;
     return Cone(
         origin,
         direction,
         lift,
         max(dot(n, direction), LEAST_RISE),
-        2.1 * norm_1(n),
+        CLEARANCE * norm_1(n),
         0.5,
         grid_exit(origin, direction, resolution),
         0.0,
@@ -83,7 +92,8 @@ fn cone_advance(cone: ptr<function, Cone>, knobs_: ConeKnobs) -> bool {
     if begin >= (*cone).end || (*cone).transmittance < LEAST_TRANSMITTANCE {
         return false;
     }
-    let wide = begin * SLOPE_60 * knobs_.footprint;
+    // At 60° the diameter, 2 sin 30° · distance, is the distance.
+    let wide = begin * knobs_.footprint;
     let clear = ((*cone).lift + begin * (*cone).rise) / (*cone).clearance;
     let size = max(min(wide, clear), 1.0);
     let length = min(size * knobs_.step, (*cone).end - begin);

@@ -1,6 +1,7 @@
 // A linear picture as a screen shows it: exposure, tone curve, sRGB coding.
 //
-// Curves: `clip` cuts at 1; `reinhard` takes luminance L to L / (1 + L) and keeps the colour's ratios (Reinhard et al. 2002, eq. 3).
+// Curves: `clip` cuts at 1; `reinhard` takes luminance L to L / (1 + L) and keeps the colour's ratios (Reinhard et al.
+// 2002, eq. 3).
 // Reads a texel, writes a texel.
 
 import lib/color;

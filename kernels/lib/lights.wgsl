@@ -1,7 +1,7 @@
 // Light that arrives from the scene's point, spot and directional lights, and whether a light map lets it through.
 //
-// Irradiance is that of a surface facing the light, W/m²: I/r² for point and spot lights (I in W/sr), the light's own for directional
-// ones. Spot cones: KHR_lights_punctual's formula; `range` is ignored.
+// Irradiance is that of a surface facing the light, W/m²: I/r² for point and spot lights (I in W/sr), the light's own
+// for directional ones. Spot cones: KHR_lights_punctual's formula; `range` is ignored.
 // Cost: a light 64 B; a look into its map a view (112 B) and 4 depth texels, filtered by the comparing sampler.
 
 struct Light {
@@ -89,9 +89,9 @@ fn view_of(light: Light, position: vec3f) -> u32 {
 /// Share of the light, 0 to 1, that reaches a point of a surface with unit normal `n` (either side).
 ///
 /// The map holds depths at the centres of its texels and blends four of them, each up to L = √2 texels aside. Seen at
-/// angle α from its normal, a plane's depth there is L tan α off; moving the point by m along the normal, to the light's
-/// side, gains m / cos α, so that m ≥ L sin α clears it: 1.5 texels do at any angle. `slack` (metres) is what the caller
-/// knows its point to be off; it moves the point towards the light.
+/// angle α from its normal, a plane's depth there is L tan α off; moving the point by m along the normal, to the
+/// light's side, gains m / cos α, so that m ≥ L sin α clears it: 1.5 texels do at any angle. `slack` (metres) is what
+/// the caller knows its point to be off; it moves the point towards the light.
 fn visibility(light: Light, arrival_: Arrival, position: vec3f, n: vec3f, slack: f32) -> f32 {
     let number = view_of(light, position);
     let size = f32(textureDimensions(light_depth).x);

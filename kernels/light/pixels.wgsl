@@ -1,8 +1,9 @@
 // The picture: direct light of each pixel's surface and, with the indirect light, all of it.
 //
-// direct = emission that the camera sees + ρ/π · Σ E max(0, n·l) S over the lights (R eq. 7.1, corrected: E the irradiance facing the light, ρ once)
-// + what emitting surfaces add, as traced. A light behind the triangle's plane adds nothing. Radiances, W/(sr·m²);
-// black where there is no surface. `linear_depth`: metres along the camera's forward axis, 0 where there is no surface.
+// direct = emission that the camera sees + ρ/π · Σ E max(0, n·l) S over the lights (R eq. 7.1, corrected: E the
+// irradiance facing the light, ρ once) + what emitting surfaces add, as traced. A light behind the triangle's plane
+// adds nothing. Radiances, W/(sr·m²); black where there is no surface. `linear_depth`: metres along the camera's
+// forward axis, 0 where there is no surface.
 // Reads per pixel: up to 7 texels, per light 64 + 112 B and 4 depths; writes 3 texels.
 
 import lib/camera;

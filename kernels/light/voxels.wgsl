@@ -1,11 +1,13 @@
 // First scattering in the voxels: the light of all lights, and of emitting voxels, that the surface in each voxel
 // reflects. Writes premultiplied radiance ρ/π · E and opacity 1 where there is a surface, 0 elsewhere.
 //
-// Source: R 7.1 (eq. 7.1 with ρ/π · E in place of the products of colours), light maps looked up from the voxels. Light is
-// evaluated at the mean position of the surface, not at the voxel's centre. That mean is on the surface where it is flat, and never further from
-// it than half the voxel's diagonal (both lie in the voxel): this much the point is moved towards the light.
-// Emission is gathered by the six cones of R 6.8 over each side of the mean normal, from the surface's mean position.
-// Reads per filled voxel: 40 B, per light 64 + 112 B and 4 depths, and 12 cones where the scene emits; writes 1 or 2 texels.
+// Source: R 7.1 (eq. 7.1 with ρ/π · E in place of the products of colours), light maps looked up from the voxels. Light
+// is evaluated at the mean position of the surface, not at the voxel's centre: on the surface where that is flat, and
+// never further from it than half the voxel's diagonal (a mean of points in a cube is that close to one of them). By
+// this much the point is moved towards the light before it is looked up.
+// Emission is gathered by the six cones of R 6.8 over each side of the mean normal, from the mean position.
+// Reads per filled voxel: 40 B, per light 64 + 112 B and 4 depths, and 12 cones where the scene emits; writes 1 or 2
+// texels.
 
 import lib/voxel_sums;
 import lib/math;

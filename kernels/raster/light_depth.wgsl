@@ -1,7 +1,8 @@
 // Depth of the scene from a light: one layer of the light maps.
 //
 // Reversed depth (1 near, 0 far). Both sides of every surface; holes of masked materials stay open.
-// Reads per vertex: a triangle (16 B), a vertex (32 B), an instance (64 B); per fragment of masked materials 4 to 8 texels.
+// Reads per vertex: a triangle (16 B), a vertex (32 B), an instance (64 B); per fragment of masked materials 4 to 8
+// texels.
 
 import lib/scene;
 @if(scene.masked) import lib/material;

@@ -1,7 +1,7 @@
 // Module of the role `storage`: one colour and opacity for each voxel, the same in all directions.
 //
-// Source: R 5.1.1, 5.2.1. Colours are radiances (W/(sr·m²)), premultiplied by the opacity; reflected light and the light
-// that surfaces emit are kept apart. Positions are in world space; levels are mip levels, fractions blend two.
+// Source: R 5.1.1, 5.2.1. Colours are radiances (W/(sr·m²)), premultiplied by the opacity; reflected light and the
+// light that surfaces emit are kept apart. Positions are in world space; levels are mip levels, fractions blend two.
 // Cost: a quadrilinear sample for each call.
 
 import lib/grid;

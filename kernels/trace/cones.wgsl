@@ -1,8 +1,9 @@
 // Light that voxels send to the surface in each pixel, gathered by six cones: what they reflect (`indirect`), what they
 // emit (`emissive_light`), and how open the surroundings are (`ambient_occlusion`), all in one march.
 //
-// Source: R 6.3, 6.4, eq. 6.8, 6.9, 6.14: radiance ρ/π Σ W L, with ρ once. Ambient occlusion here is the cosine-weighted share of
-// directions in which nothing lies within `ao_distance`, 1 = open: occlusion counts fully up to there and not beyond (a step that crosses it counts in part).
+// Source: R 6.3, 6.4, eq. 6.8, 6.9, 6.14: radiance ρ/π Σ W L, with ρ once. Ambient occlusion here is the
+// cosine-weighted share of directions in which nothing lies within `ao_distance`, 1 = open: occlusion counts fully up
+// to there and not beyond (a step that crosses it counts in part).
 // Reads per pixel: 3 texels, and 6 cones of some 15 samples; writes 2 or 3 texels.
 
 import lib/camera;
