@@ -26,7 +26,7 @@ pub struct Record {
     pub clock: &'static str,
     /// Why the clock is not the GPU's timestamps.
     pub clock_reason: Option<String>,
-    /// Frames that were sampled, after the first one.
+    /// Frames that were sampled: after the first one, or that one alone if no number was asked for.
     pub frames: usize,
     /// Median over the sampled frames.
     pub frame_ms: Option<f64>,

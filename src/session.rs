@@ -57,6 +57,8 @@ impl Default for Request {
 pub struct Prepared {
     pub graph: Arc<Graph>,
     pub schedule: Schedule,
+    /// By stage: the bits on whose change it has to run again. Empty for what is dropped.
+    pub depends: Vec<BTreeSet<u32>>,
     pub size: [u32; 2],
     pub camera: usize,
     pub warnings: Vec<Problem>,
@@ -104,13 +106,37 @@ pub fn prepare(request: &Request, library: &Library, scene: Option<&Scene>) -> R
         keep: request.keep,
         varying: request.varying.clone(),
     };
-    let schedule = schedule(&graph::work::work(&graph), &options)
-        .map_err(|error| Problem::failure("schedule", format!("the graph can't be scheduled: {error}")))?;
+    let work = graph::work::work(&graph);
+    let scheduled = |options: &schedule::Options| {
+        schedule(&work, options)
+            .map_err(|error| Problem::failure("schedule", format!("the graph can't be scheduled: {error}")))
+    };
+    let varying = (0..graph.plan.values.len()).map(graph::facts::value_bit);
+    let varying = graph::work::all_causes().into_iter().chain(varying).collect();
+    let depends = reruns(&scheduled(&schedule::Options { keep: true, varying, ..options.clone() })?);
+    let schedule = scheduled(&options)?;
     let mut problems = graph::work::unwritten(&graph, &schedule);
     problems.extend(over_budget(request, &graph, &schedule));
     let mut warnings = graph.warnings.clone();
     warnings.extend(Problems::check(problems)?);
-    Ok(Prepared { graph: Arc::new(graph), schedule, size: request.size, camera: request.camera, warnings })
+    Ok(Prepared {
+        graph: Arc::new(graph),
+        schedule,
+        depends,
+        size: request.size,
+        camera: request.camera,
+        warnings,
+    })
+}
+
+fn reruns(schedule: &Schedule) -> Vec<BTreeSet<u32>> {
+    let steps = schedule.fates.iter().map(|fate| match fate {
+        schedule::Fate::Run { step } => {
+            schedule.steps.get(*step).map(|s| s.reruns().clone()).unwrap_or_default()
+        }
+        schedule::Fate::Dropped(_) => BTreeSet::new(),
+    });
+    steps.collect()
 }
 
 fn over_budget(request: &Request, graph: &Graph, schedule: &Schedule) -> Option<Problem> {

@@ -103,14 +103,15 @@ fn status(prepared: &Prepared, stage: usize) -> (&'static str, Option<String>) {
     match (&prepared.schedule.fates[stage], graph::work::undecided(&prepared.graph, stage)) {
         (Fate::Dropped(reason), _) => ("dropped", Some(reason.clone())),
         (Fate::Run { .. }, Some(condition)) => ("open", Some(format!("depends on the scene: {condition}"))),
-        (Fate::Run { step }, None) => {
-            let steps = &prepared.schedule.steps;
-            let bits = steps.get(*step).map(Step::reruns).into_iter().flatten();
-            let names: Vec<_> = bits.map(|b| graph::facts::name_of_bit(&prepared.graph.plan, *b)).collect();
+        (Fate::Run { .. }, None) => {
+            let names: Vec<_> = prepared.depends[stage]
+                .iter()
+                .map(|b| graph::facts::name_of_bit(&prepared.graph.plan, *b))
+                .collect();
             let again = if names.is_empty() {
                 "once".to_owned()
             } else {
-                format!("when {} change", names.join(", "))
+                format!("when this changes: {}", names.join(", "))
             };
             ("run", Some(again))
         }
@@ -170,7 +171,9 @@ fn json(name: &str, prepared: &Prepared) -> serde_json::Value {
         .enumerate()
         .map(|(index, stage)| {
             let (status, reason) = status(prepared, index);
-            serde_json::json!({ "path": stage.path, "status": status, "reason": reason })
+            let depends: Vec<_> =
+                prepared.depends[index].iter().map(|b| graph::facts::name_of_bit(&graph.plan, *b)).collect();
+            serde_json::json!({ "path": stage.path, "status": status, "reason": reason, "depends": depends })
         })
         .collect();
     let resources: Vec<_> = graph

@@ -33,9 +33,10 @@ pub struct RenderArgs {
     /// Write a subresource, as `radiance@mip2`; slices of a volume are laid out side by side. Turns reuse off.
     #[arg(long = "dump", value_name = "RESOURCE[=FILE]")]
     dumps: Vec<String>,
-    /// Frames to run and to sample, after a first one that is timed apart.
-    #[arg(long, value_name = "N", default_value_t = 1)]
-    frames: u32,
+    /// Frames to run and to sample, after a first one that is timed apart. Without it a single frame is run, whose
+    /// times include what drivers do at the first use of a kernel.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    frames: Option<u32>,
     /// Tone curve of PNG files made from linear outputs.
     #[arg(long, value_name = "CURVE", default_value = "clip")]
     curve: Curve,
@@ -124,21 +125,27 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     }
 }
 
-/// The first frame apart, then, from the same state, the frames that count.
-fn sample(frame: &mut Frame, gpu: &Gpu, changes: &Changes, frames: u32) -> Result<Samples> {
-    let bar = ProgressBar::new(u64::from(frames) + 1);
+/// The first frame apart, then, from the same state, the frames that count; or the first frame alone.
+fn sample(frame: &mut Frame, gpu: &Gpu, changes: &Changes, frames: Option<u32>) -> Result<Samples> {
+    let bar = ProgressBar::new(u64::from(frames.unwrap_or(0)) + 1);
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} frames, {eta} left") {
         bar.set_style(style);
     }
-    let mut samples = Samples { first: Some(frame.run(gpu, changes)?.clone()), frames: Vec::new() };
+    let first = frame.run(gpu, changes)?.clone();
     bar.inc(1);
-    // What is kept stays kept; only a pipeline that goes on from frame to frame starts again.
-    if frame.goes_on() {
-        frame.reset();
-    }
-    for _ in 0..frames {
-        samples.frames.push(frame.run(gpu, changes)?.clone());
-        bar.inc(1);
+    let mut samples = Samples { first: Some(first.clone()), frames: Vec::new() };
+    match frames {
+        None => samples.frames.push(first),
+        Some(frames) => {
+            // What is kept stays kept; only a pipeline that goes on from frame to frame starts again.
+            if frame.goes_on() {
+                frame.reset();
+            }
+            for _ in 0..frames {
+                samples.frames.push(frame.run(gpu, changes)?.clone());
+                bar.inc(1);
+            }
+        }
     }
     bar.finish_and_clear();
     Ok(samples)
@@ -207,7 +214,11 @@ fn table(record: &Record) -> String {
         record.adapter.driver_info
     ));
     let why = record.clock_reason.as_ref().map_or_else(String::new, |why| format!(", since {why}"));
-    line(format_args!("clock: {}{why}; medians of {} frames in ms\n", record.clock, record.frames));
+    let which = match record.frames {
+        1 => "one frame".to_owned(),
+        frames => format!("medians of {frames} frames"),
+    };
+    line(format_args!("clock: {}{why}; {which}, in ms\n", record.clock));
     let widest = record.stages.iter().map(|s| s.path.len()).max().unwrap_or(0).max(5);
     line(format_args!("{:<widest$}  {:>9}  {:>9}", "stage", "ms", "first use"));
     for stage in &record.stages {
