@@ -133,6 +133,29 @@ pub fn pipeline() -> impl Strategy<Value = Work> {
     })
 }
 
+/// Work that makes it hard to share well: one heap, items of many sizes, read long after they were written.
+pub fn crowded() -> impl Strategy<Value = Work> {
+    vec((1..1000_u64, vec(1..40_usize, 0..3)), 20..120).prop_map(|tasks| {
+        let mut work = Work::default();
+        for (index, (units, back)) in tasks.into_iter().enumerate() {
+            let touch =
+                |item: usize, write: bool| Touch { cell: Cell { item, cell: 0 }, read: !write, write };
+            let reads = back.into_iter().chain([1]).filter_map(|back| index.checked_sub(back));
+            work.tasks.push(Task {
+                path: format!("{index:04}"),
+                touches: reads.map(|item| touch(item, false)).chain([touch(index, true)]).collect(),
+                depends: BTreeSet::new(),
+                off: None,
+            });
+            let pool = Pool::Heap { heap: 0, alignment: 256 };
+            let name = format!("item{index}");
+            work.items.push(Item { name, cells: 1, bytes: units * 256, start: Start::Covered, pool });
+        }
+        work.outputs.push(Cell { item: work.items.len() - 1, cell: 0 });
+        work
+    })
+}
+
 pub fn options() -> impl Strategy<Value = Options> {
     (any::<bool>(), any::<bool>(), any::<bool>(), btree_set(0..BITS, 0..4))
         .prop_map(|(reuse, drop, keep, varying)| Options { reuse, drop, keep, varying })
