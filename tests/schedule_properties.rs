@@ -7,8 +7,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::Index;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
 use schedule_reference::frames::{self, World};
-use schedule_reference::generate::{changes, options, pipeline, rough_work, shuffled, wild_work, work};
+use schedule_reference::generate::{
+    changes, crowded, options, pipeline, rough_work, shuffled, wild_work, work,
+};
 use schedule_reference::machine::{self, share};
 use schedule_reference::{conflict, order, reads, rules, running, step_cells, touches, writes};
 use voxgi::schedule::{
@@ -151,9 +155,10 @@ proptest! {
         prop_assert_eq!(memory.without_reuse_bytes, sum(false));
         if options.reuse {
             prop_assert_eq!(memory.lower_bound_bytes, largest_set(&work, &schedule));
-            // Heaps of a few items need not reach the bound, but sharing never costs more than it saves.
+            // Sharing never costs more than it saves, up to what alignment costs.
+            let padding = 256 * work.items.len() as u64;
             prop_assert!(memory.peak_bytes >= memory.lower_bound_bytes);
-            prop_assert!(memory.peak_bytes <= memory.without_reuse_bytes);
+            prop_assert!(memory.peak_bytes <= memory.without_reuse_bytes + padding);
         } else {
             prop_assert_eq!(memory.peak_bytes, memory.without_reuse_bytes);
         }
@@ -288,4 +293,22 @@ proptest! {
             prop_assert_eq!(schedule.places.len(), work.items.len());
         }
     }
+}
+
+/// A heap that is full of long lives has no place within a tenth of the bound that a short search always finds. One
+/// graph in a hundred misses it; these are the same graphs each time.
+#[test]
+fn sharing_stays_near_the_largest_set_in_crowded_heaps() {
+    let mut runner = TestRunner::deterministic();
+    let ratios: Vec<f64> = (0..100)
+        .map(|_| {
+            let work = crowded().new_tree(&mut runner).expect("no filter").current();
+            let all = Options { reuse: true, drop: true, keep: false, varying: BTreeSet::new() };
+            let schedule = of(&work, &all);
+            schedule.memory.peak_bytes as f64 / largest_set(&work, &schedule) as f64
+        })
+        .collect();
+    let beyond = ratios.iter().filter(|ratio| **ratio > 1.1).count();
+    assert!(beyond <= 3, "{beyond} of 100 graphs take more than 1.1 times the largest set");
+    assert!(ratios.iter().all(|ratio| *ratio <= 1.2), "{ratios:?}");
 }

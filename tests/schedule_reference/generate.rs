@@ -17,8 +17,8 @@ fn item() -> impl Strategy<Value = Item> {
         4 => Just(Start::Covered), 3 => Just(Start::Fill), 2 => Just(Start::Kept), 1 => Just(Start::Given)
     ];
     let sized = prop_oneof![
-        5 => (0..2_u32, prop_oneof![Just(16_u64), Just(256)], 1..64_u64).prop_map(|(heap, alignment, units)| {
-            (Pool::Heap { heap, alignment }, units * 256)
+        5 => (0..2_u32, prop_oneof![Just(16_u64), Just(256)], 1..9999_u64).prop_map(|(heap, alignment, bytes)| {
+            (Pool::Heap { heap, alignment }, bytes)
         }),
         3 => (0..3_u32).prop_map(|pool| (Pool::Alike(pool), 1000 * u64::from(pool + 1))),
         1 => (1..9999_u64).prop_map(|bytes| (Pool::Alone, bytes)),
@@ -78,7 +78,8 @@ pub fn rough_work() -> impl Strategy<Value = Work> {
     )
 }
 
-/// Work in which every covered cell is written before it is read: the others are filled instead.
+/// Work in which every covered cell is written before it is read: the others are filled instead. Sizes are such that
+/// alignment costs nothing.
 pub fn work() -> impl Strategy<Value = Work> {
     rough_work().prop_map(|mut work| {
         let mut unwritten: BTreeSet<usize> = BTreeSet::new();
@@ -88,6 +89,9 @@ pub fn work() -> impl Strategy<Value = Work> {
             written.extend(writes(&work, task));
         }
         unwritten.extend(work.outputs.iter().filter(|cell| !written.contains(cell)).map(|cell| cell.item));
+        for item in work.items.iter_mut().filter(|item| matches!(item.pool, Pool::Heap { .. })) {
+            item.bytes = item.bytes.next_multiple_of(256);
+        }
         for item in unwritten {
             if work.items[item].start == Start::Covered {
                 work.items[item].start = Start::Fill;
@@ -112,6 +116,7 @@ pub fn pipeline() -> impl Strategy<Value = Work> {
                 }
             }
             for mut item in made {
+                item.bytes = item.bytes.next_multiple_of(256);
                 item.name = format!("item{}", work.items.len());
                 item.start = Start::Covered;
                 touches.extend((0..item.cells).map(|cell| Touch {
@@ -127,6 +132,29 @@ pub fn pipeline() -> impl Strategy<Value = Work> {
                 depends: BTreeSet::new(),
                 off: None,
             });
+        }
+        work.outputs.push(Cell { item: work.items.len() - 1, cell: 0 });
+        work
+    })
+}
+
+/// Work that makes it hard to share well: one heap, items of many sizes, read long after they were written.
+pub fn crowded() -> impl Strategy<Value = Work> {
+    vec((1..1000_u64, vec(1..40_usize, 0..3)), 20..120).prop_map(|tasks| {
+        let mut work = Work::default();
+        for (index, (units, back)) in tasks.into_iter().enumerate() {
+            let touch =
+                |item: usize, write: bool| Touch { cell: Cell { item, cell: 0 }, read: !write, write };
+            let reads = back.into_iter().chain([1]).filter_map(|back| index.checked_sub(back));
+            work.tasks.push(Task {
+                path: format!("{index:04}"),
+                touches: reads.map(|item| touch(item, false)).chain([touch(index, true)]).collect(),
+                depends: BTreeSet::new(),
+                off: None,
+            });
+            let pool = Pool::Heap { heap: 0, alignment: 256 };
+            let name = format!("item{index}");
+            work.items.push(Item { name, cells: 1, bytes: units * 256, start: Start::Covered, pool });
         }
         work.outputs.push(Cell { item: work.items.len() - 1, cell: 0 });
         work
