@@ -1,7 +1,7 @@
 //! Where pipelines, parts and kernels come from: folders on disk first, in the order given, then the library that
 //! is embedded in the binary. One code path for both.
 //!
-//! A name is made of pieces of `a-z A-Z 0-9 _ -`, joined by `/`: `voxelize/triangles`. Nothing else is looked up, so
+//! A name is made of pieces of `a-z A-Z 0-9 _ -`, joined by `/`: `raster/surfaces`. Nothing else is looked up, so
 //! no name leads out of its folder. (A symbolic link inside a library folder is its owner's business.)
 
 use crate::problem::{Problem, Result, Source};

@@ -3,7 +3,7 @@
 use super::{Graph, Shape, Usage};
 use crate::plan::{self, Condition};
 use crate::problem::Problem;
-use crate::schedule::{Cell, Item, Pool, Schedule, Start, Task, Touch, Work};
+use crate::schedule::{Cell, FRAME, Item, Pool, Schedule, Start, Task, Touch, Work};
 use rustc_hash::FxHashMap;
 
 /// Byte ranges of one buffer start at multiples of this: the guaranteed `min_storage_buffer_offset_alignment`.
@@ -68,6 +68,10 @@ fn task(graph: &Graph, stage: &super::Stage) -> Task {
     if let Some(linked) = &stage.linked {
         task.depends = linked.depends.clone();
         for touch in &linked.touches {
+            // The two slots of a history change places in each frame, so both must be written and read in each.
+            if graph.resources[touch.reference.resource].slots > 1 {
+                task.depends.insert(FRAME);
+            }
             for cell in graph.cells(&touch.reference) {
                 let cell = Cell { item: touch.reference.resource, cell };
                 task.touches.push(Touch { cell, read: touch.read, write: touch.write });
@@ -77,7 +81,7 @@ fn task(graph: &Graph, stage: &super::Stage) -> Task {
     task
 }
 
-/// Live stages that read what no stage wrote.
+/// Live stages that read what no stage wrote, and outputs that none writes.
 pub fn unwritten(graph: &Graph, schedule: &Schedule) -> Vec<Problem> {
     let mut problems: Vec<Problem> = Vec::new();
     for (task, cell) in &schedule.unwritten {
@@ -109,6 +113,19 @@ pub fn unwritten(graph: &Graph, schedule: &Schedule) -> Vec<Problem> {
         .help(help);
         if !problems.iter().any(|p| p.labels == problem.labels) {
             problems.push(problem);
+        }
+    }
+    for cell in &schedule.unwritten_outputs {
+        let of = |(_, r, _): &&(String, plan::Reference, crate::problem::Place)| r.resource == cell.item;
+        if let Some((name, _, place)) = graph.plan.outputs.iter().find(of) {
+            let problem =
+                Problem::input("unwritten-output", format!("no stage that runs writes the output `{name}`"))
+                    .at(place, "named here")
+                    .at(&graph.plan.resources[cell.item].place, "is `Covered`: undefined until written")
+                    .help("let a stage write it, or give it a start value: `start: Fill(0)`");
+            if !problems.contains(&problem) {
+                problems.push(problem);
+            }
         }
     }
     problems

@@ -80,7 +80,7 @@ fn features_are_those_that_are_named() {
     let named: Vec<_> = features::NAMES.iter().map(|feature| (feature.name, feature.kind)).collect();
     assert_eq!(kinds, named);
     let wanted = "scene.triangles scene.vertices scene.materials scene.instances scene.min scene.max \
-        scene.emissive scene.textured scene.masked scene.double_sided scene.min_roughness scene.max_metallic \
+        scene.emissive scene.max_emission scene.textured scene.masked scene.double_sided scene.min_roughness scene.max_metallic \
         scene.moving lights.point lights.spot lights.directional lights.total views.total cameras.total";
     assert_eq!(named.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" "), wanted);
 }
