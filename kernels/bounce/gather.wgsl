@@ -5,7 +5,7 @@
 // T's gain is at most the albedo.
 // Reads per filled voxel: 40 B and 12 cones; writes one texel.
 
-import lib/hemisphere;
+import role/hemisphere;
 import lib/math;
 import lib/two_sided;
 import lib/voxel_sums;

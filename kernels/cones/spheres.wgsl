@@ -18,6 +18,7 @@
 // A cone is cut into steps of `cone_step` sampled sizes, sampled in their middle. Sizes never fall below a voxel.
 // Across a grid of 64³: about 10 steps along the normal, 14 for each of the other cones.
 
+import role/hemisphere;
 import role/mipmap;
 import lib/grid;
 import lib/math;
@@ -67,7 +68,7 @@ fn grid_exit(origin: vec3f, direction: vec3f, resolution: f32) -> f32 {
     return max(min(exit.x, min(exit.y, exit.z)), 0.0);
 }
 
-/// A 60° cone from a point (world) of a surface with unit normal `n` on the side where the cone starts.
+/// A cone from a point (world) of a surface with unit normal `n` on the side where the cone starts.
 fn cone_begin(position: vec3f, n: vec3f, direction: vec3f, resolution: f32) -> Cone {
     let lift = LIFT * norm_1(n);
     let origin = to_grid(position) + n * lift;
@@ -92,8 +93,7 @@ fn cone_advance(cone: ptr<function, Cone>, knobs_: ConeKnobs) -> bool {
     if begin >= (*cone).end || (*cone).transmittance < LEAST_TRANSMITTANCE {
         return false;
     }
-    // At 60° the diameter, 2 sin 30° · distance, is the distance.
-    let wide = begin * knobs_.footprint;
+    let wide = begin * CONE_DIAMETER * knobs_.footprint;
     let clear = ((*cone).lift + begin * (*cone).rise) / (*cone).clearance;
     let size = max(min(wide, clear), 1.0);
     let length = min(size * knobs_.step, (*cone).end - begin);

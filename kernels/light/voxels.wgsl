@@ -5,7 +5,7 @@
 // is evaluated at the mean position of the surface, not at the voxel's centre: on the surface where that is flat, and
 // never further from it than half the voxel's diagonal (a mean of points in a cube is that close to one of them). By
 // this much the point is moved towards the light before it is looked up.
-// Emission is gathered by the six cones of R 6.8 over each side of the mean normal, from the mean position.
+// Emission is gathered by the cones of the role `hemisphere` over each side of the mean normal, from the mean position.
 // Reads per filled voxel: 40 B, per light 64 + 112 B and 4 depths, and 12 cones where the scene emits; writes 1 or 2
 // texels.
 
@@ -13,7 +13,7 @@ import lib/voxel_sums;
 import lib/math;
 import lib/two_sided;
 @if(lights.total > 0) import lib/lights;
-@if(scene.emissive) import lib/hemisphere;
+@if(scene.emissive) import role/hemisphere;
 @if(scene.emissive) import role/cones;
 @if(scene.emissive) import role/storage;
 

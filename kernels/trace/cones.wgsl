@@ -1,14 +1,14 @@
-// Light that voxels send to the surface in each pixel, gathered by six cones: what they reflect (`indirect`), what they
+// Light that voxels send to the surface in each pixel, gathered by cones: what they reflect (`indirect`), what they
 // emit (`emissive_light`), and how open the surroundings are (`ambient_occlusion`), all in one march.
 //
 // Source: R 6.3, 6.4, eq. 6.8, 6.9, 6.14: radiance ρ/π Σ W L, with ρ once. Ambient occlusion here is the
 // cosine-weighted share of directions in which nothing lies within `ao_distance`, 1 = open: occlusion counts fully up
 // to there and not beyond (a step that crosses it counts in part).
-// Reads per pixel: 3 texels, and 6 cones of some 15 samples; writes 2 or 3 texels.
+// Reads per pixel: 3 texels, and for each cone some 15 samples; writes 2 or 3 texels.
 
 import lib/camera;
 import lib/grid;
-import lib/hemisphere;
+import role/hemisphere;
 import lib/math;
 import role/cones;
 import role/storage;
@@ -69,7 +69,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let pixel = id.xy;
     let seen = textureLoad(depth, pixel, 0);
     var axis = Gathered(vec4f(0.0, 0.0, 0.0, 1.0), vec4f(0.0));
-    var sides = Gathered(vec4f(0.0, 0.0, 0.0, 5.0), vec4f(0.0));
+    var sides = Gathered(vec4f(0.0, 0.0, 0.0, f32(CONES - 1u)), vec4f(0.0));
     if seen > 0.0 {
         let position = pixel_position(pixel, size, seen);
         let plane = unit_or(textureLoad(face_normal, pixel, 0).xyz, vec3f(0.0, 1.0, 0.0));

@@ -1,4 +1,4 @@
-// Six cones of 60° over a hemisphere, and the weights of their radiances in the irradiance.
+// Module of the role `hemisphere`: six cones of 60°, and the weights of their radiances in the irradiance.
 //
 // Source: R eq. 6.8, 6.9. The hemisphere is cut into the cap within 30° of the normal and five sectors around it;
 // ∫ cosθ dω over them is π/4 and 3π/20, together π. After the division by π (Lambert: ρ/π) the weights are 1/4 and
@@ -6,6 +6,8 @@
 // Variant (`exact`): weights 1/3 and 2/15 integrate 1, cosθ and cos²θ exactly when the cones return axis values.
 
 const CONES: u32 = 6u;
+/// Diameter of a cone's samples over their distance: 2 sin 30°.
+const CONE_DIAMETER: f32 = 1.0;
 
 /// Axis of a cone; y is the normal.
 fn cone_axis(i: u32) -> vec3f {
