@@ -113,6 +113,12 @@ impl Gpu {
 
     /// What textures of a format can do on this device.
     pub fn format_features(&self, format: wgpu::TextureFormat) -> wgpu::TextureFormatFeatures {
+        if !self.has(format.required_features()) {
+            return wgpu::TextureFormatFeatures {
+                allowed_usages: wgpu::TextureUsages::empty(),
+                flags: wgpu::TextureFormatFeatureFlags::empty(),
+            };
+        }
         if self.has(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
             self.adapter.get_texture_format_features(format)
         } else {

@@ -204,7 +204,7 @@ impl Prepared {
     pub fn realise(self, gpu: &Gpu, scene: &Scene, clock: Clock, poison: Option<Poison>) -> Result<Frame> {
         let limits = gpu.device.limits();
         let whose = format!("the adapter `{}`", gpu.info.name);
-        Problems::check(graph::check::limits(&self.graph, &limits, &whose))?;
+        Problems::check(graph::check::limits(&self.graph, &limits, "the device"))?;
         let features = |format| gpu.format_features(format);
         Problems::check(graph::formats::check(&self.graph, &features, &whose))?;
         let aspect = f64::from(self.size[0]) / f64::from(self.size[1]);

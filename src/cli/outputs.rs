@@ -41,10 +41,13 @@ impl Target {
             let reference = graph.plan.resource(name)?;
             targets.push(Self { name: name.to_owned(), reference, path });
         }
+        let there = |p: &Path| p.as_os_str().is_empty() || p.is_dir() || folder == Some(p);
+        if let Some(target) = targets.iter().find(|t| !t.path.parent().is_some_and(there)) {
+            let message = format!("`{}` would be in a folder that does not exist", target.path.display());
+            let help = "make the folder first; only that of `--out` is made";
+            return Err(Problem::input("no-folder", message).help(help).into());
+        }
         if let Some(folder) = folder {
-            std::fs::create_dir_all(folder).map_err(|e| {
-                Problem::failure("unwritable", format!("can't make the folder `{}`: {e}", folder.display()))
-            })?;
             for (name, reference, _) in &graph.plan.outputs {
                 let extensions: &[&str] = if name == DISPLAY { &["png"] } else { &["png", "exr"] };
                 for extension in extensions {

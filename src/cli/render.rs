@@ -96,6 +96,11 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let mut frame = prepared.realise(&gpu, &scene, clock.clone(), poison)?;
     let samples = sample(&mut frame, &gpu, &changes, args.frames)?;
     let scan = if args.scan { Some(frame.scan(&gpu)?) } else { None };
+    if let Some(folder) = &args.out {
+        std::fs::create_dir_all(folder).map_err(|e| {
+            Problem::failure("unwritable", format!("can't make the folder `{}`: {e}", folder.display()))
+        })?;
+    }
     let writer = Writer { gpu: &gpu, frame: &frame, curve: args.curve, exposure: args.exposure };
     let outputs = writer.write(&targets)?;
     let mut record = make_record(args, &scene, &gpu, &frame, &samples, &clock)?;

@@ -14,6 +14,8 @@ mod readback;
 mod run;
 mod scan;
 mod stage;
+#[cfg(test)]
+mod tests;
 mod timer;
 mod uniforms;
 

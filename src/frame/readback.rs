@@ -34,8 +34,11 @@ impl Frame {
         else {
             return Err(unreadable("it is no texture, or no stage that runs touches it"));
         };
-        let (component, channels) =
-            components(shape.format).ok_or_else(|| unreadable("its format is not one that holds numbers"))?;
+        let (component, channels) = components(shape.format).ok_or_else(|| {
+            unreadable("voxgi knows no way to unpack its format")
+                .at(&self.graph.plan.resources[reference.resource].place, "declared here")
+                .help("let a stage copy it into another, such as rgba16float")
+        })?;
         let mip = reference.mip.unwrap_or(0);
         let [width, height, depth] = shape.mip_size(mip).unwrap_or([1; 3]);
         let bytes = copy_texture(gpu, texture, shape, (mip, reference.layer.unwrap_or(0)))?;

@@ -240,7 +240,7 @@ impl<'a> Maker<'a> {
 
 /// Workgroups that cover `threads`. One dimension of too many is folded into the next, if that is empty; kernels that
 /// allow for it use `linear_index`.
-fn workgroups(threads: [u64; 3], size: [u32; 3], limit: u32) -> Option<[u32; 3]> {
+pub(super) fn workgroups(threads: [u64; 3], size: [u32; 3], limit: u32) -> Option<[u32; 3]> {
     let mut groups = [0u64; 3];
     for i in 0..3 {
         groups[i] = threads[i].div_ceil(u64::from(size[i].max(1))).max(1);

@@ -115,25 +115,8 @@ impl Binder<'_> {
         if let Some(Named::Resource(reference)) = self.plan.lookup(scope, &binding.name) {
             return Some(*reference);
         }
-        let resources: Vec<&str> = self
-            .plan
-            .visible(scope)
-            .into_iter()
-            .filter(|name| matches!(self.plan.lookup(scope, name), Some(Named::Resource(_))))
-            .collect();
-        let mut problem = Problem::input(
-            "missing-binding",
-            format!("stage `{}`: no resource is called `{}`", self.stage.path, binding.name),
-        )
-        .at(&binding.place, "the kernel binds this")
-        .at(&self.stage.kernel_place, "for this stage")
-        .suggest(&binding.name, resources);
-        let advice = format!("declare a resource `{0}`, or say `bind: {{\"{0}\": \"…\"}}`", binding.name);
-        problem.help = Some(match problem.help {
-            Some(help) => format!("{advice}; {help}"),
-            None => advice,
-        });
-        self.problems.push(problem);
+        let at = (&binding.place, "the kernel binds this".to_owned());
+        self.problems.push(missing(self.plan, self.stage, scope, &binding.name, at));
         None
     }
 
@@ -157,7 +140,8 @@ impl Binder<'_> {
                     format!("`{path}` is {is}, but `{}` binds {wants}", binding.name),
                 )
                 .at(&binding.place, "the kernel's declaration")
-                .at(&self.plan.resources[reference.resource].place, "the resource"),
+                .at(&self.plan.resources[reference.resource].place, "the resource")
+                .help("declare the two alike, or bind another resource"),
             );
             return None;
         }
@@ -228,7 +212,13 @@ impl Binder<'_> {
         self.problems.push(
             Problem::input(
                 "dimension",
-                format!("`{}` is {is:?}, but `{}` is declared {wants:?}", planned.path, binding.name),
+                format!(
+                    "`{}` is {}, but the kernel declares `{}` as {}",
+                    planned.path,
+                    dimension_name(is),
+                    binding.name,
+                    dimension_name(wants)
+                ),
             )
             .at(&binding.place, "the kernel's declaration")
             .at(&planned.place, "the resource")
@@ -277,7 +267,10 @@ impl Binder<'_> {
                 ),
             )
             .at(&binding.place, "the kernel's declaration")
-            .at(&planned.place, "the resource"),
+            .at(&planned.place, "the resource")
+            .help(
+                "give the resource a format of that kind, or declare another kind of texture in the kernel",
+            ),
         );
         None
     }
@@ -305,8 +298,9 @@ impl Binder<'_> {
                     format!("stage `{}`: no sampler is called `{}`", self.stage.path, binding.name),
                 )
                 .at(&binding.place, "the kernel binds this")
-                .suggest(&binding.name, samplers)
-                .help(format!("declare it: samplers: {{\"{}\": (filter: Linear)}}", binding.name)),
+                .at(&self.stage.kernel_place, "for this stage")
+                .help(format!("declare it: `samplers: {{\"{}\": (filter: Linear)}}`", binding.name))
+                .suggest(&binding.name, samplers),
             );
             return None;
         };
@@ -321,11 +315,49 @@ impl Binder<'_> {
                         if comparison { "no `compare`" } else { "a `compare`" }
                     ),
                 )
-                .at(&binding.place, "the kernel's declaration"),
+                .at(&binding.place, "the kernel's declaration")
+                .help(if comparison {
+                    "give the sampler a `compare: Greater`, or declare it as `sampler` in the kernel"
+                } else {
+                    "take `compare` from the sampler, or declare it as `sampler_comparison` in the kernel"
+                }),
             );
             return None;
         }
         Some(sampler.clone())
+    }
+}
+
+/// There is no resource behind the binding or target `name`; `at` is where the kernel asks for it, and how.
+pub fn missing(
+    plan: &Plan,
+    stage: &PlannedStage,
+    scope: ScopeId,
+    name: &str,
+    at: (&Place, String),
+) -> Problem {
+    let is_resource = |name: &&str| matches!(plan.lookup(scope, name), Some(Named::Resource(_)));
+    let message = format!("stage `{}`: no resource is called `{name}`", stage.path);
+    let mut problem = Problem::input("missing-binding", message)
+        .at(at.0, at.1)
+        .at(&stage.kernel_place, "for this stage")
+        .suggest(name, plan.visible(scope).into_iter().filter(is_resource));
+    let advice = format!("declare a resource `{name}`, or say `bind: {{\"{name}\": \"…\"}}`");
+    problem.help = Some(match problem.help {
+        Some(help) => format!("{advice}; {help}"),
+        None => advice,
+    });
+    problem
+}
+
+fn dimension_name(dimension: TextureViewDimension) -> &'static str {
+    match dimension {
+        TextureViewDimension::D1 => "1D",
+        TextureViewDimension::D2 => "2D",
+        TextureViewDimension::D2Array => "a 2D array",
+        TextureViewDimension::Cube => "a cube",
+        TextureViewDimension::CubeArray => "a cube array",
+        TextureViewDimension::D3 => "3D",
     }
 }
 

@@ -71,9 +71,9 @@ pub fn limits(graph: &Graph, limits: &Limits, whose: &str) -> Vec<Problem> {
         let over = |what: &str, is: u64, most: u64| {
             Problem::input(
                 "over-limit",
-                format!("`{}`: {what} is {is}, over the limit of {most}", planned.path),
+                format!("`{}`: {what} is {is}, and {whose} allows {most}", planned.path),
             )
-            .at(&planned.place, format!("of {whose}"))
+            .at(&planned.place, "this resource")
             .help("choose a smaller size: `--size`, or the knob it depends on")
         };
         match &resource.shape {

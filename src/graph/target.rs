@@ -1,6 +1,6 @@
 //! Render targets: a fragment entry's outputs by name, their formats, and the size they must share.
 
-use super::binding::format_name;
+use super::binding::{format_name, missing};
 use super::{Resource, Shape, Touch, Usage};
 use crate::kernel::{Entry, Scalar};
 use crate::plan::{DepthUse, Draw, Named, Plan, PlannedStage, Reference};
@@ -31,15 +31,8 @@ pub fn resolve(
                 },
             };
             let Some(reference) = found else {
-                problems.push(
-                    Problem::input(
-                        "missing-binding",
-                        format!("stage `{}`: no resource is called `{}`", stage.path, output.name),
-                    )
-                    .at(&entry.place, format!("this entry point writes the target `{}`", output.name))
-                    .at(&stage.kernel_place, "for this stage")
-                    .help(format!("declare a texture `{0}`, or say `bind: {{\"{0}\": \"…\"}}`", output.name)),
-                );
+                let label = format!("this entry point writes the target `{}`", output.name);
+                problems.push(missing(plan, stage, stage.scope, &output.name, (&entry.place, label)));
                 continue;
             };
             if let Some(problem) = misfit(plan, stage, resources, &reference, &output.name, output.scalar) {
@@ -179,7 +172,7 @@ pub fn size(
             Some(_) => {}
         }
     }
-    if !any {
+    if !any && problems.is_empty() {
         problems.push(
             Problem::input("no-target", format!("stage `{}` draws into nothing", stage.path))
                 .at(&stage.place, "this stage")

@@ -242,5 +242,5 @@ fn reformatted(declared: &Type, format: TextureFormat, binding: &Binding) -> Res
 
 /// The name that WebGPU has for a format.
 fn format_name(format: TextureFormat) -> String {
-    format!("{format:?}").to_lowercase()
+    format!("{format:?}").to_lowercase().replace("srgb", "-srgb")
 }

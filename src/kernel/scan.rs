@@ -285,6 +285,7 @@ impl Walk<'_> {
                             "take `@group` and `@binding` away: a binding is tied to a resource by its name",
                         ),
                 );
+                return;
             }
         }
     }

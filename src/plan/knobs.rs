@@ -93,9 +93,13 @@ impl World<'_> {
         let found: Vec<usize> = (0..self.knobs.len()).filter(|&i| last(&self.knobs[i].path)).collect();
         match found.as_slice() {
             [index] => Ok(*index),
-            [] => Err(Problem::input("unknown-knob", format!("there is no knob `{name}`"))
-                .at(place, "set here")
-                .suggest(name, self.knobs.iter().map(|knob| knob.path.as_str()))),
+            [] => {
+                let last = |path| str::rsplit(path, '.').next().unwrap_or_default();
+                let of_all = |path| if name.contains('.') { path } else { last(path) };
+                Err(Problem::input("unknown-knob", format!("there is no knob `{name}`"))
+                    .at(place, "set here")
+                    .suggest(name, self.knobs.iter().map(|knob| of_all(&knob.path))))
+            }
             several => {
                 let paths: Vec<&str> = several.iter().map(|&i| self.knobs[i].path.as_str()).collect();
                 Err(Problem::input("ambiguous-knob", format!("{} knobs are called `{name}`", paths.len()))
@@ -160,6 +164,7 @@ fn read(knob: &Knob, name: &str, text: &str, place: &Place) -> Result<Value, Pro
     let literal = literal.ok_or_else(|| {
         Problem::input("knob-type", format!("the knob `{name}` is {wanted}"))
             .at(place, format!("not {wanted}"))
+            .help(format!("its default is {}", Value::from(&knob.default.value)))
     })?;
     match forbidden(knob, &literal, place) {
         Some(problem) => Err(problem),

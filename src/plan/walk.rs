@@ -212,7 +212,7 @@ impl<'w, 'a> Walk<'w, 'a> {
                 }
                 self.world.declare(scope, &key.value, named, &key.place);
             } else if let Some(reference) = self.reference(text, around.scope, &around) {
-                bind.insert(key.value.clone(), (reference, text.place.clone()));
+                bind.insert(key.value.clone(), (reference, key.place.clone()));
             }
         }
         let Some(work) = work(self, around.scope, &bind, &mut around) else { return };
