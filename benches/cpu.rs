@@ -15,7 +15,8 @@ fn main() {
 }
 
 fn cornell() -> Scene {
-    scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell-point.glb")).expect("a built-in scene")
+    scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell-point.glb"))
+        .expect("a built-in scene")
 }
 
 fn request(pipeline: &str) -> Request {
@@ -57,5 +58,8 @@ fn frame(bencher: Bencher) {
     let mut frame = prepared.realise(&gpu, &scene, Clock::Timestamps, None).expect("a frame");
     let mut encode = Vec::new();
     bencher.bench_local(|| encode.push(frame.run(&gpu, &Changes::All).expect("a frame").encode));
-    println!("encode and submit, median: {:.3} ms", voxgi::record::quantile(&encode, 0.5).unwrap_or(f64::NAN));
+    println!(
+        "encode and submit, median: {:.3} ms",
+        voxgi::record::quantile(&encode, 0.5).unwrap_or(f64::NAN)
+    );
 }

@@ -1,6 +1,7 @@
 //! `voxgi kernels`: what there is, with bindings and documentation.
 
 use super::{print, print_json};
+use crate::document::{self, Root};
 use crate::kernel::{BindingKind, Description, describe};
 use crate::library::{Library, Shelf};
 use crate::problem::{Problems, Result};
@@ -12,7 +13,8 @@ use std::path::PathBuf;
 pub struct KernelsArgs {
     /// Only kernels whose name contains this.
     name: Option<String>,
-    /// Say which module stands behind a role that kernels import; may be repeated.
+    /// Say which module stands behind a role that kernels import; may be repeated. Default: that of the first part in
+    /// the role, by name.
     #[arg(long = "role", value_name = "ROLE=KERNEL", value_parser = super::pair)]
     roles: Vec<(String, String)>,
     /// A folder with `kernels/` in it that is searched before the built-in library; may be repeated.
@@ -25,7 +27,8 @@ pub struct KernelsArgs {
 
 pub fn run(args: &KernelsArgs) -> Result<()> {
     let library = Library::new(args.libraries.clone())?;
-    let roles: BTreeMap<String, String> = args.roles.iter().cloned().collect();
+    let mut roles = modules(&library);
+    roles.extend(args.roles.iter().cloned());
     let wanted = |name: &String| args.name.as_ref().is_none_or(|part| name.contains(part.as_str()));
     let (mut kernels, mut problems) = (Vec::new(), Vec::new());
     for name in library.list(Shelf::Kernels).iter().filter(|n| wanted(n)) {
@@ -42,6 +45,20 @@ pub fn run(args: &KernelsArgs) -> Result<()> {
         kernels.iter().for_each(|k| print(&text(k)));
     }
     Problems::check(problems).map(|_| ())
+}
+
+/// For each role the module of the first part, by name, that can play it: some choice is needed to list bindings.
+fn modules(library: &Library) -> BTreeMap<String, String> {
+    let mut modules = BTreeMap::new();
+    for part in library.list(Shelf::Parts) {
+        // A part that can't be read has no module to offer; `check` says what is wrong with it.
+        let document =
+            library.find(Shelf::Parts, &part).ok().and_then(|source| document::parse(&source).ok());
+        if let Some(Root::Part { role, module: Some(module), .. }) = document.map(|d| d.root) {
+            modules.entry(role.value).or_insert(module.value);
+        }
+    }
+    modules
 }
 
 /// A binding's kind as WGSL would declare it, roughly.
@@ -85,7 +102,8 @@ fn text(kernel: &Description) -> String {
         }
     }
     for binding in &kernel.bindings {
-        text += &format!("    {:<20} {}\n", binding.name, kind(&binding.kind));
+        let of = binding.role.as_ref().map_or(String::new(), |role| format!(", of the role {role}"));
+        text += &format!("    {:<20} {}{of}\n", binding.name, kind(&binding.kind));
     }
     if !kernel.imports.is_empty() {
         text += &format!("    imports {}\n", kernel.imports.join(", "));

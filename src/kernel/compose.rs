@@ -179,7 +179,11 @@ impl Loader<'_> {
         let source = match self.library.find(Shelf::Kernels, kernel) {
             Ok(source) => source,
             Err(problem) => {
-                let label = if self.open.is_empty() { "named here" } else { "imported here" };
+                let label = match role {
+                    Some(role) => format!("the part in the role `{role}` names it as its `module`"),
+                    None if self.open.is_empty() => "named here".to_owned(),
+                    None => "imported here".to_owned(),
+                };
                 self.problems.push(problem.at(at, label));
                 return;
             }

@@ -21,12 +21,13 @@ pub(super) fn write_whole<E: Display>(
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let file = create(folder).map_err(|error| failure(&error))?;
+    // The error itself would name the temporary file.
+    let file = create(folder).map_err(|error| failure(&error.kind()))?;
     let mut writer = BufWriter::new(file);
     write(&mut writer).map_err(|error| failure(&error))?;
     writer.flush().map_err(|error| failure(&error))?;
     let file = writer.into_inner().map_err(|error| failure(&error))?;
-    file.persist(path).map_err(|error| failure(&error))?;
+    file.persist(path).map_err(|error| failure(&error.error))?;
     Ok(())
 }
 
