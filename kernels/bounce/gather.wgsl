@@ -6,6 +6,7 @@
 // Reads per filled voxel: 40 B and 12 cones; writes one texel.
 
 import role/hemisphere;
+import lib/filled;
 import lib/math;
 import lib/two_sided;
 import lib/voxel_sums;
@@ -48,17 +49,23 @@ fn gather_reflected(position: vec3f, n: vec3f) -> vec3f {
 }
 
 @compute @workgroup_size(4, 4, 4)
-fn main(@builtin(global_invocation_id) id: vec3u) {
+fn main(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(local_invocation_index) local: u32,
+) {
     let size = textureDimensions(bounced);
-    if any(id >= size) {
+    let inside = all(id < size);
+    let filled = inside && is_filled(id, size.x);
+    if inside && !filled {
+        textureStore(bounced, id, vec4f(0.0));
+    }
+    if local >= list_filled(filled, local) {
         return;
     }
-    let surfel = surfel_of(id, size.x);
-    var value = vec4f(0.0);
-    if surfel.filled {
-        let n = unit_or(surfel.normal, vec3f(0.0, 1.0, 0.0));
-        let sides = Sides(gather_reflected(surfel.position, n), gather_reflected(surfel.position, -n));
-        value = vec4f(surfel.albedo / PI * brighter(sides), 1.0);
-    }
-    textureStore(bounced, id, value);
+    let voxel = filled_voxel(local, group);
+    let surfel = surfel_of(voxel, size.x);
+    let n = unit_or(surfel.normal, vec3f(0.0, 1.0, 0.0));
+    let sides = Sides(gather_reflected(surfel.position, n), gather_reflected(surfel.position, -n));
+    textureStore(bounced, voxel, vec4f(surfel.albedo / PI * brighter(sides), 1.0));
 }

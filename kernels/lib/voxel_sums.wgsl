@@ -21,6 +21,11 @@ struct Surfel {
     position: vec3f,
 }
 
+/// Whether any fragment lies in the voxel.
+fn is_filled(voxel: vec3u, resolution: u32) -> bool {
+    return sums[voxel_number(voxel, resolution) * SUM_WORDS] > 0u;
+}
+
 fn surfel_of(voxel: vec3u, resolution: u32) -> Surfel {
     let at = voxel_number(voxel, resolution) * SUM_WORDS;
     let count = min(sums[at], MOST_TERMS);

@@ -9,6 +9,7 @@
 // Reads per filled voxel: 40 B, per light 64 + 112 B and 4 depths, and 12 cones where the scene emits; writes 1 or 2
 // texels.
 
+import lib/filled;
 import lib/voxel_sums;
 import lib/math;
 import lib/two_sided;
@@ -38,8 +39,6 @@ struct Counters {
 }
 
 var<storage, read_write> counters: Counters;
-
-var<workgroup> group_filled: atomic<u32>;
 
 @if(lights.total > 0)
 fn add_lights(sides: ptr<function, Sides>, surfel: Surfel, n: vec3f) {
@@ -85,32 +84,42 @@ fn gather_emission(position: vec3f, n: vec3f) -> vec3f {
     return PI * hemisphere_mean(axis, sides, knobs.exact_weights != 0u).rgb;
 }
 
+fn store(voxel: vec3u, value: vec4f) {
+    textureStore(lit, voxel, value);
+    @if(bounces > 1) {
+        textureStore(first, voxel, value);
+    }
+}
+
 @compute @workgroup_size(4, 4, 4)
-fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
+fn main(
+    @builtin(global_invocation_id) id: vec3u,
+    @builtin(workgroup_id) group: vec3u,
+    @builtin(local_invocation_index) local: u32,
+) {
     let size = textureDimensions(lit);
-    if all(id < size) {
-        let surfel = surfel_of(id, size.x);
-        var value = vec4f(0.0);
-        if surfel.filled {
-            let n = unit_or(surfel.normal, vec3f(0.0, 1.0, 0.0));
-            var sides = Sides(vec3f(0.0), vec3f(0.0));
-            @if(lights.total > 0) {
-                add_lights(&sides, surfel, n);
-            }
-            @if(scene.emissive) {
-                sides.front += gather_emission(surfel.position, n);
-                sides.back += gather_emission(surfel.position, -n);
-            }
-            value = vec4f(surfel.albedo / PI * brighter(sides), 1.0);
-            atomicAdd(&group_filled, 1u);
-        }
-        textureStore(lit, id, value);
-        @if(bounces > 1) {
-            textureStore(first, id, value);
-        }
+    let inside = all(id < size);
+    let filled = inside && is_filled(id, size.x);
+    if inside && !filled {
+        store(id, vec4f(0.0));
     }
-    workgroupBarrier();
-    if local == 0u && atomicLoad(&group_filled) > 0u {
-        atomicAdd(&counters.filled_voxels, atomicLoad(&group_filled));
+    let count = list_filled(filled, local);
+    if local >= count {
+        return;
     }
+    if local == 0u {
+        atomicAdd(&counters.filled_voxels, count);
+    }
+    let voxel = filled_voxel(local, group);
+    let surfel = surfel_of(voxel, size.x);
+    let n = unit_or(surfel.normal, vec3f(0.0, 1.0, 0.0));
+    var sides = Sides(vec3f(0.0), vec3f(0.0));
+    @if(lights.total > 0) {
+        add_lights(&sides, surfel, n);
+    }
+    @if(scene.emissive) {
+        sides.front += gather_emission(surfel.position, n);
+        sides.back += gather_emission(surfel.position, -n);
+    }
+    store(voxel, vec4f(surfel.albedo / PI * brighter(sides), 1.0));
 }
