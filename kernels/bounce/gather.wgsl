@@ -5,47 +5,18 @@
 // T's gain is at most the albedo.
 // Reads per filled voxel: 40 B and 12 cones; writes one texel.
 
-import role/hemisphere;
 import lib/filled;
+import lib/gather;
 import lib/math;
 import lib/two_sided;
 import lib/voxel_sums;
-import role/cones;
 import role/storage;
-
-struct Knobs {
-    cone_step: f32,
-    cone_footprint: f32,
-    cone_density: f32,
-    exact_weights: u32,
-}
-
-var<uniform> knobs: Knobs;
 
 /// Premultiplied radiance; opacity 1 where there is a surface.
 var bounced: texture_storage_3d<rgba16float, write>;
 
-/// Irradiance from the voxels on the side of `n`.
-fn gather_reflected(position: vec3f, n: vec3f) -> vec3f {
-    let cones = ConeKnobs(knobs.cone_step, knobs.cone_footprint, knobs.cone_density);
-    let frame = frame_around(n);
-    let resolution = f32(textureDimensions(bounced).x);
-    var axis = vec4f(0.0);
-    var sides = vec4f(0.0);
-    for (var i = 0u; i < CONES; i++) {
-        var cone = cone_begin(position, n, frame * cone_axis(i), resolution);
-        var radiance = vec4f(0.0);
-        for (var k = 0u; k < MOST_STEPS && cone_advance(&cone, cones); k++) {
-            let found = reflected_at(cone_position(cone), cone.level, cone.direction);
-            radiance += cone_absorb(&cone, found.a, cones) * found;
-        }
-        if i == 0u {
-            axis = radiance;
-        } else {
-            sides += radiance;
-        }
-    }
-    return PI * hemisphere_mean(axis, sides, knobs.exact_weights != 0u).rgb;
+fn seen_at(position: vec3f, level: f32, direction: vec3f) -> vec4f {
+    return reflected_at(position, level, direction);
 }
 
 @compute @workgroup_size(4, 4, 4)
@@ -66,6 +37,7 @@ fn main(
     let voxel = filled_voxel(local, group);
     let surfel = surfel_of(voxel, size.x);
     let n = unit_or(surfel.normal, vec3f(0.0, 1.0, 0.0));
-    let sides = Sides(gather_reflected(surfel.position, n), gather_reflected(surfel.position, -n));
+    let resolution = f32(size.x);
+    let sides = Sides(gather(surfel.position, n, resolution), gather(surfel.position, -n, resolution));
     textureStore(bounced, voxel, vec4f(surfel.albedo / PI * brighter(sides), 1.0));
 }

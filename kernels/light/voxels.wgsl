@@ -14,20 +14,8 @@ import lib/voxel_sums;
 import lib/math;
 import lib/two_sided;
 @if(lights.total > 0) import lib/lights;
-@if(scene.emissive) import role/hemisphere;
-@if(scene.emissive) import role/cones;
+@if(scene.emissive) import lib/gather;
 @if(scene.emissive) import role/storage;
-
-@if(scene.emissive)
-struct Knobs {
-    cone_step: f32,
-    cone_footprint: f32,
-    cone_density: f32,
-    exact_weights: u32,
-}
-
-@if(scene.emissive)
-var<uniform> knobs: Knobs;
 
 var lit: texture_storage_3d<rgba16float, write>;
 /// The same again: what bounces are added to.
@@ -60,28 +48,9 @@ fn add_lights(sides: ptr<function, Sides>, surfel: Surfel, n: vec3f) {
     }
 }
 
-/// Irradiance from emitting voxels on the side of `n`.
 @if(scene.emissive)
-fn gather_emission(position: vec3f, n: vec3f) -> vec3f {
-    let cones = ConeKnobs(knobs.cone_step, knobs.cone_footprint, knobs.cone_density);
-    let frame = frame_around(n);
-    let resolution = f32(textureDimensions(lit).x);
-    var axis = vec4f(0.0);
-    var sides = vec4f(0.0);
-    for (var i = 0u; i < CONES; i++) {
-        var cone = cone_begin(position, n, frame * cone_axis(i), resolution);
-        var radiance = vec4f(0.0);
-        for (var k = 0u; k < MOST_STEPS && cone_advance(&cone, cones); k++) {
-            let found = emitted_at(cone_position(cone), cone.level, cone.direction);
-            radiance += cone_absorb(&cone, found.a, cones) * found;
-        }
-        if i == 0u {
-            axis = radiance;
-        } else {
-            sides += radiance;
-        }
-    }
-    return PI * hemisphere_mean(axis, sides, knobs.exact_weights != 0u).rgb;
+fn seen_at(position: vec3f, level: f32, direction: vec3f) -> vec4f {
+    return emitted_at(position, level, direction);
 }
 
 fn store(voxel: vec3u, value: vec4f) {
@@ -118,8 +87,8 @@ fn main(
         add_lights(&sides, surfel, n);
     }
     @if(scene.emissive) {
-        sides.front += gather_emission(surfel.position, n);
-        sides.back += gather_emission(surfel.position, -n);
+        sides.front += gather(surfel.position, n, f32(size.x));
+        sides.back += gather(surfel.position, -n, f32(size.x));
     }
     store(voxel, vec4f(surfel.albedo / PI * brighter(sides), 1.0));
 }
