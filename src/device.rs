@@ -119,11 +119,14 @@ impl Gpu {
                 flags: wgpu::TextureFormatFeatureFlags::empty(),
             };
         }
-        if self.has(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
-            self.adapter.get_texture_format_features(format)
-        } else {
-            format.guaranteed_format_features(self.device.features())
+        let mut can = match self.has(Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES) {
+            true => self.adapter.get_texture_format_features(format),
+            false => format.guaranteed_format_features(self.device.features()),
+        };
+        if format == wgpu::TextureFormat::Bgra8Unorm && !self.has(Features::BGRA8UNORM_STORAGE) {
+            can.allowed_usages.remove(wgpu::TextureUsages::STORAGE_BINDING);
         }
+        can
     }
 
     /// The first error that the driver has reported since the last call. wgpu names the stage in it: passes, pipelines

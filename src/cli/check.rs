@@ -98,12 +98,14 @@ fn read_limits(from: &str) -> Result<(wgpu_types::Limits, String)> {
     }
 }
 
-/// `run`, `dropped` or `open` (without a scene), and why.
+/// `run`, `kept`, `dropped` or `open` (without a scene), and why.
 fn status(prepared: &Prepared, stage: usize) -> (&'static str, Option<String>) {
     match (&prepared.schedule.fates[stage], graph::work::undecided(&prepared.graph, stage)) {
         (Fate::Dropped(reason), _) => ("dropped", Some(reason.clone())),
         (Fate::Run { .. }, Some(condition)) => ("open", Some(format!("depends on the scene: {condition}"))),
-        (Fate::Run { .. }, None) => {
+        (Fate::Run { step }, None) => {
+            // Only with `--change` are there steps that nothing makes run again.
+            let kept = prepared.schedule.steps.get(*step).is_some_and(|step| step.reruns().is_empty());
             let names: Vec<_> = prepared.depends[stage]
                 .iter()
                 .map(|b| graph::facts::name_of_bit(&prepared.graph.plan, *b))
@@ -113,7 +115,7 @@ fn status(prepared: &Prepared, stage: usize) -> (&'static str, Option<String>) {
             } else {
                 format!("when this changes: {}", names.join(", "))
             };
-            ("run", Some(again))
+            if kept { ("kept", Some("after the first frame".to_owned())) } else { ("run", Some(again)) }
         }
     }
 }

@@ -225,7 +225,10 @@ fn table(record: &Record) -> String {
     };
     line(format_args!("clock: {}{why}; {which}, in ms\n", record.clock));
     let widest = record.stages.iter().map(|s| s.path.len()).max().unwrap_or(0).max(5);
-    line(format_args!("{:<widest$}  {:>9}  {:>9}", "stage", "ms", "first use"));
+    line(format_args!(
+        "{:<widest$}  {:>9}  {:>9}  {:>9}  {:>9}",
+        "stage", "median", "p10", "p90", "first use"
+    ));
     for stage in &record.stages {
         match &stage.reason {
             None => line(format_args!(
@@ -238,7 +241,14 @@ fn table(record: &Record) -> String {
         }
     }
     line(format_args!("{:<widest$}  {:>9}", "fills", ms(record.fills_ms)));
-    line(format_args!("{:<widest$}  {:>9}  {:>9}", "frame", ms(record.frame_ms), ms(record.first_use_ms)));
+    line(format_args!(
+        "{:<widest$}  {:>9}  {:>9}  {:>9}  {:>9}",
+        "frame",
+        ms(record.frame_ms),
+        ms(record.frame.p10),
+        ms(record.frame.p90),
+        ms(record.first_use_ms)
+    ));
     line(format_args!("{:<widest$}  {:>9}\n", "encode (CPU)", ms(record.encode_ms)));
     for (counter, count) in &record.counters {
         line(format_args!("{counter:<widest$}  {count:>9}"));

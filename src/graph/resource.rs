@@ -42,7 +42,11 @@ pub fn planned(plan: &Plan) -> Vec<Resource> {
                     mips,
                     layers,
                     array: *array,
-                    usage: TextureUsages::COPY_SRC | TextureUsages::COPY_DST,
+                    // Depth is filled by drawing, whether or not a stage draws into it.
+                    usage: match format.has_depth_aspect() {
+                        true => TextureUsages::COPY_SRC | TextureUsages::RENDER_ATTACHMENT,
+                        false => TextureUsages::COPY_SRC | TextureUsages::COPY_DST,
+                    },
                 });
                 (shape, mips, layers)
             }

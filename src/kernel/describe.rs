@@ -57,7 +57,12 @@ pub fn describe(library: &Library, name: &str, roles: &BTreeMap<String, String>)
     };
     if description.needs.is_empty() {
         let composed: Composed = compose(library, name, &source.at(0..0), roles, &Anything)?;
-        let reflected = reflect_with(&composed, &BTreeMap::new(), Some(1.0))?;
+        let module = !["@compute", "@vertex", "@fragment"].iter().any(|stage| composed.text.contains(stage));
+        let reflected = match reflect_with(&composed, &BTreeMap::new(), Some(1.0)) {
+            // A module may leave something for its importers to define; what is wrong in it, they tell.
+            Err(_) if module => return Ok(description),
+            reflected => reflected?,
+        };
         description.bindings =
             if reflected.entries.is_empty() { declared_bindings(&composed)? } else { reflected.bindings };
         description.entries = reflected.entries;

@@ -31,6 +31,7 @@ impl File {
         let (json, binary) = split(&content).map_err(|fault| fault.at(&name.to_string(), "the start"))?;
         let root = parse(json).map_err(|error| {
             Problem::input("gltf-json", format!("`{name}` is not a glTF document: {error}"))
+                .help("a .glb file begins with `glTF`, and a .gltf file is JSON; export it again")
         })?;
         if !root.asset.version.starts_with("2.") {
             let message = format!("`{name}` is glTF {:?}; only 2.x is understood", root.asset.version);
@@ -140,7 +141,9 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Problem> {
     read_bounded(path).map_err(|error| {
         let message = format!("can't read the scene `{}`: {error}", path.display());
         match error.kind() {
-            ErrorKind::NotFound | ErrorKind::InvalidInput => Problem::input("scene-file", message),
+            ErrorKind::NotFound => Problem::input("scene-file", message)
+                .help("check the path; `voxgi generate` writes the built-in scenes to `scenes/`"),
+            ErrorKind::InvalidInput => Problem::input("scene-file", message),
             _ => Problem::failure("scene-file", message),
         }
     })
