@@ -1,0 +1,11 @@
+// Shows numbers as a picture.
+
+var numbers: texture_2d<f32>;
+var color: texture_storage_2d<rgba16float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    if all(id.xy < textureDimensions(color)) {
+        textureStore(color, id.xy, vec4f(textureLoad(numbers, id.xy, 0).x));
+    }
+}

@@ -1,0 +1,8 @@
+// How bright the picture is.
+
+import lib/dark;
+
+fn brightness(position: vec2u) -> f32 {
+    let sum: u32 = position.x + position.y;
+    return f32(sum);
+}

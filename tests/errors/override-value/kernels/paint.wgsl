@@ -1,0 +1,10 @@
+// Paints a picture white.
+
+override tile: u32 = 8;
+
+var color: texture_storage_2d<rgba16float, write>;
+
+@compute @workgroup_size(tile, tile)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    textureStore(color, id.xy, vec4f(1.0));
+}

@@ -1,0 +1,9 @@
+// Paints a picture white.
+
+var<storage, read> lights: array<vec4f>;
+var color: texture_storage_2d<rgba16float, write>;
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    textureStore(color, id.xy, lights[0]);
+}

@@ -1,0 +1,6 @@
+// How bright the picture is.
+
+fn brightness(position: vec2u) -> f32 {
+    let sum: u32 = position.x + position.y;
+    return sum;
+}
