@@ -1,0 +1,76 @@
+//! What the engine may leave out, keep, reorder or share never shows in a picture, in no bit of it.
+
+use crate::bench::{Job, differences, gpu, open, scene, shipped};
+use voxgi::device::LimitSet;
+use voxgi::frame::Poison;
+use voxgi::problem::Kind;
+
+/// Small enough for a software driver; everything else is as shipped.
+fn small<'a>(scene: &'a voxgi::scene::Scene, pipeline: &str) -> Job<'a> {
+    Job::new(scene, pipeline, [48, 48]).set("resolution", "32").set("light_map_size", "128")
+}
+
+/// Runs all shipped pipelines on a scene in all ways. Two frames, since only in the second something is kept.
+fn shipped_pipelines_keep_their_bits(scene_name: &str) {
+    let scene = scene(scene_name);
+    let mut compared = 0;
+    for pipeline in shipped() {
+        let job = small(&scene, &pipeline);
+        let plain = job.outputs(gpu(), 1);
+        assert!(plain.values().any(|bytes| bytes.iter().any(|b| *b != 0)), "{pipeline} draws nothing");
+        for (way, job) in job.ways() {
+            let found = differences(&plain, &job.outputs(gpu(), 2));
+            assert!(found.is_empty(), "{pipeline} on {scene_name}, {way}: {found:?}");
+            compared += 1;
+        }
+    }
+    assert!(compared >= 7);
+}
+
+#[test]
+fn shipped_pipelines_keep_their_bits_with_a_point_light() {
+    shipped_pipelines_keep_their_bits("cornell-point");
+}
+
+#[test]
+fn shipped_pipelines_keep_their_bits_with_an_area_light() {
+    shipped_pipelines_keep_their_bits("cornell-box");
+}
+
+/// A pipeline that asks for more than WebGPU guarantees must say so; one that does not looks the same.
+#[test]
+fn shipped_pipelines_keep_their_bits_within_the_limits_of_webgpu() {
+    let scene = scene("cornell-point");
+    let limited = open(&LimitSet::Webgpu);
+    let mut compared = 0;
+    for pipeline in shipped() {
+        let job = small(&scene, &pipeline);
+        match job.start(&limited) {
+            Ok(mut run) => {
+                run.frames(1).expect("a frame");
+                let found = differences(&job.outputs(gpu(), 1), &run.outputs());
+                assert!(found.is_empty(), "{pipeline}: {found:?}");
+                compared += 1;
+            }
+            Err(problems) => {
+                assert!(problems.iter().any(|p| p.kind == Kind::Input), "{pipeline}: {problems:?}");
+                println!("{pipeline} needs more than WebGPU guarantees");
+            }
+        }
+    }
+    assert!(compared > 0, "no pipeline runs within the limits of WebGPU");
+}
+
+/// The control of all that is above: a stage that reads what nobody wrote, which no check can know, shows.
+#[test]
+fn poison_shows_where_a_covered_resource_is_not_covered() {
+    let scene = scene("cornell-point");
+    let with = |poison, cover: &str| {
+        let mut job = Job::new(&scene, "uncovered", [8, 8]).set("covered", cover);
+        job.poison = Some(poison);
+        job.outputs(gpu(), 1)
+    };
+    let both = |cover| differences(&with(Poison::Ones, cover), &with(Poison::Pattern, cover));
+    assert_eq!(both("false").len(), 2, "texture and buffer");
+    assert!(both("true").is_empty());
+}
