@@ -5,9 +5,10 @@ use std::sync::{Arc, Mutex};
 use wgpu::{Adapter, AdapterInfo, Backends, Device, DeviceType, Features, Instance, Limits, Queue};
 
 /// Features that voxgi uses where the adapter has them; pipelines may need more of what the adapter offers.
-const WANTED: [Features; 6] = [
+const WANTED: [Features; 7] = [
     Features::TIMESTAMP_QUERY,
     Features::TIMESTAMP_QUERY_INSIDE_ENCODERS,
+    Features::TIMESTAMP_QUERY_INSIDE_PASSES,
     Features::CLEAR_TEXTURE,
     Features::FLOAT32_FILTERABLE,
     Features::TEXTURE_ADAPTER_SPECIFIC_FORMAT_FEATURES,

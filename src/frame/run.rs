@@ -1,14 +1,18 @@
 //! Encodes and runs a frame. Nothing is allocated here once the first frame has run, except by wgpu itself.
 
+use super::fill::FillOp;
 use super::stage::{MadeDraw, MadeRaster, MadeStage, MadeWork};
-use super::timer::{Clock, Timer, Times};
+use super::timer::{Clock, Times};
 use super::{Frame, Op};
 use crate::device::Gpu;
 use crate::problem::Problem;
 use crate::schedule::{Changed, FRAME, Schedule};
 use std::collections::BTreeSet;
 use std::time::Instant;
-use wgpu::{CommandEncoder, CommandEncoderDescriptor, ComputePassDescriptor, RenderPassDescriptor};
+use wgpu::{
+    CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor, QuerySet,
+    RenderPassDescriptor,
+};
 
 /// What changed since the frame before.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,10 +47,11 @@ impl Frame {
             _ => Changed::All,
         };
         self.schedule.runs(changed, &mut self.state.done);
-        match self.timer.clock {
-            Clock::Timestamps => self.run_whole(gpu, changes)?,
-            Clock::Wall(_) => self.run_apart(gpu, changes)?,
-        }
+        let ran = match self.timer.clock {
+            Clock::Timestamps => self.run_whole(gpu, changes),
+            Clock::Wall(_) => self.run_apart(gpu, changes),
+        };
+        ran.map_err(|problem| self.blame(gpu, problem))?;
         self.end_steps();
         Ok(&self.timer.times)
     }
@@ -83,22 +88,91 @@ impl Frame {
         }
     }
 
+    /// Encodes one step in a pass of its own.
     fn encode_step(&self, encoder: &mut CommandEncoder, step: usize) {
         match &self.ops[step] {
-            Op::Fill(fills) => {
-                self.timer.mark(encoder, step, 0);
-                fills.iter().for_each(|fill| fill.encode(encoder));
-                self.timer.mark(encoder, step, 1);
-            }
+            Op::Fill(fills) => self.encode_fills(encoder, fills, step),
             Op::Stage(task) => {
                 if let Some(stage) = &self.stages[*task] {
-                    if let Some((counters, _)) = &stage.counters {
-                        encoder.clear_buffer(counters, 0, None);
-                    }
-                    encode_stage(encoder, stage, &self.timer, step, self.parity());
+                    clear_counters(encoder, stage);
+                    encode_stage(encoder, stage, self.timer.pass(step), self.parity());
                 }
             }
         }
+    }
+
+    fn encode_fills(&self, encoder: &mut CommandEncoder, fills: &[FillOp], step: usize) {
+        self.timer.mark(encoder, step, 0);
+        fills.iter().for_each(|fill| fill.encode(encoder));
+        self.timer.mark(encoder, step, 1);
+    }
+
+    /// Encodes all steps that are to be done. Compute stages that follow one another share a pass, where their times
+    /// can be marked inside it: a pass costs the CPU more than a dispatch.
+    fn encode_steps(&self, encoder: &mut CommandEncoder) {
+        if !self.timer.joins {
+            (0..self.ops.len())
+                .filter(|step| self.state.done[*step])
+                .for_each(|s| self.encode_step(encoder, s));
+            return;
+        }
+        // Counters before everything, so that they end no pass.
+        for (op, done) in self.ops.iter().zip(&self.state.done) {
+            if let (Op::Stage(task), true) = (op, done)
+                && let Some(stage) = &self.stages[*task]
+            {
+                clear_counters(encoder, stage);
+            }
+        }
+        let mut open: Option<ComputePass<'static>> = None;
+        for step in (0..self.ops.len()).filter(|step| self.state.done[*step]) {
+            match &self.ops[step] {
+                Op::Fill(fills) if fills.is_empty() => {}
+                Op::Fill(fills) => {
+                    drop(open.take());
+                    self.encode_fills(encoder, fills, step);
+                }
+                Op::Stage(task) => {
+                    let Some(stage) = &self.stages[*task] else { continue };
+                    if let MadeWork::Raster(_) = stage.work {
+                        drop(open.take());
+                        encode_stage(encoder, stage, self.timer.pass(step), self.parity());
+                        continue;
+                    }
+                    let pass = open.get_or_insert_with(|| {
+                        let label = Some("compute");
+                        encoder
+                            .begin_compute_pass(&ComputePassDescriptor { label, timestamp_writes: None })
+                            .forget_lifetime()
+                    });
+                    let marks = self.timer.pass(step);
+                    if let Some((set, first)) = marks {
+                        pass.write_timestamp(set, first);
+                    }
+                    encode_dispatch(pass, stage, self.parity());
+                    if let Some((set, first)) = marks {
+                        pass.write_timestamp(set, first + 1);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Puts the stage's name to an error that the driver gave while a frame was encoded: the steps are encoded again,
+    /// one by one.
+    fn blame(&self, gpu: &Gpu, problem: Problem) -> Problem {
+        for (step, op) in self.ops.iter().enumerate() {
+            let mut encoder =
+                gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("step") });
+            self.encode_step(&mut encoder, step);
+            drop(encoder.finish());
+            if let (Err(found), Op::Stage(task)) = (gpu.check(), op) {
+                let stage = &self.graph.stages[*task];
+                let message = format!("stage `{}`: {}", stage.path, found.message);
+                return Problem { message, ..found }.at(&stage.place, "this stage");
+            }
+        }
+        problem
     }
 
     /// One encoder, one submission, timestamps.
@@ -107,11 +181,7 @@ impl Frame {
         let mut encoder =
             gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("frame") });
         self.encode_resets(&mut encoder, changes);
-        for step in 0..self.ops.len() {
-            if self.state.done[step] {
-                self.encode_step(&mut encoder, step);
-            }
-        }
+        self.encode_steps(&mut encoder);
         self.timer.resolve(&mut encoder);
         gpu.queue.submit(std::iter::once(encoder.finish()));
         let encode = begin.elapsed().as_secs_f64() * 1e3;
@@ -179,34 +249,45 @@ impl Frame {
     }
 }
 
-fn encode_stage(encoder: &mut CommandEncoder, stage: &MadeStage, timer: &Timer, step: usize, parity: usize) {
-    let Some(group) = stage.groups.get(parity).or(stage.groups.first()) else { return };
+fn clear_counters(encoder: &mut CommandEncoder, stage: &MadeStage) {
+    if let Some((counters, _)) = &stage.counters {
+        encoder.clear_buffer(counters, 0, None);
+    }
+}
+
+/// Encodes a stage in a pass of its own.
+fn encode_stage(
+    encoder: &mut CommandEncoder,
+    stage: &MadeStage,
+    marks: Option<(&QuerySet, u32)>,
+    parity: usize,
+) {
+    if let MadeWork::Raster(raster) = &stage.work {
+        return encode_raster(encoder, stage, raster, marks, parity);
+    }
+    let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
+        label: Some(&stage.path),
+        timestamp_writes: marks.map(|(query_set, first)| wgpu::ComputePassTimestampWrites {
+            query_set,
+            beginning_of_pass_write_index: Some(first),
+            end_of_pass_write_index: Some(first + 1),
+        }),
+    });
+    encode_dispatch(&mut pass, stage, parity);
+}
+
+fn encode_dispatch(pass: &mut ComputePass<'_>, stage: &MadeStage, parity: usize) {
+    pass.set_bind_group(0, stage.group(parity), &[]);
     match &stage.work {
-        MadeWork::Raster(raster) => encode_raster(encoder, stage, raster, group, timer.pass(step), parity),
-        work => {
-            let mut pass = encoder.begin_compute_pass(&ComputePassDescriptor {
-                label: Some(&stage.path),
-                timestamp_writes: timer.pass(step).map(|(query_set, first)| {
-                    wgpu::ComputePassTimestampWrites {
-                        query_set,
-                        beginning_of_pass_write_index: Some(first),
-                        end_of_pass_write_index: Some(first + 1),
-                    }
-                }),
-            });
-            pass.set_bind_group(0, group, &[]);
-            match work {
-                MadeWork::Compute { pipeline, groups: [x, y, z] } => {
-                    pass.set_pipeline(pipeline);
-                    pass.dispatch_workgroups(*x, *y, *z);
-                }
-                MadeWork::ComputeIndirect { pipeline, buffer, offset } => {
-                    pass.set_pipeline(pipeline);
-                    pass.dispatch_workgroups_indirect(buffer, *offset);
-                }
-                MadeWork::Raster(_) => {}
-            }
+        MadeWork::Compute { pipeline, groups: [x, y, z] } => {
+            pass.set_pipeline(pipeline);
+            pass.dispatch_workgroups(*x, *y, *z);
         }
+        MadeWork::ComputeIndirect { pipeline, buffer, offset } => {
+            pass.set_pipeline(pipeline);
+            pass.dispatch_workgroups_indirect(buffer, *offset);
+        }
+        MadeWork::Raster(_) => {}
     }
 }
 
@@ -217,8 +298,7 @@ fn encode_raster(
     encoder: &mut CommandEncoder,
     stage: &MadeStage,
     raster: &MadeRaster,
-    group: &wgpu::BindGroup,
-    timestamps: Option<(&wgpu::QuerySet, u32)>,
+    marks: Option<(&QuerySet, u32)>,
     parity: usize,
 ) {
     let mut colors = [const { None }; MOST_TARGETS];
@@ -229,7 +309,7 @@ fn encode_raster(
         label: Some(&stage.path),
         color_attachments: &colors[..raster.colors.len().min(MOST_TARGETS)],
         depth_stencil_attachment: raster.depth.as_ref().and_then(|d| d.depth(parity)),
-        timestamp_writes: timestamps.map(|(query_set, first)| wgpu::RenderPassTimestampWrites {
+        timestamp_writes: marks.map(|(query_set, first)| wgpu::RenderPassTimestampWrites {
             query_set,
             beginning_of_pass_write_index: Some(first),
             end_of_pass_write_index: Some(first + 1),
@@ -237,7 +317,7 @@ fn encode_raster(
         ..Default::default()
     });
     pass.set_pipeline(&raster.pipeline);
-    pass.set_bind_group(0, group, &[]);
+    pass.set_bind_group(0, stage.group(parity), &[]);
     match &raster.draw {
         MadeDraw::Vertices(count) => pass.draw(0..*count, 0..1),
         MadeDraw::Indirect(buffer, offset) => pass.draw_indirect(buffer, *offset),

@@ -81,6 +81,11 @@ impl Attachment {
 }
 
 impl MadeStage {
+    /// The bind group for frames of this parity.
+    pub fn group(&self, parity: usize) -> Option<&BindGroup> {
+        self.groups.get(parity).or(self.groups.first())
+    }
+
     /// Lets the stage's own load clear a cell, if the cell is one of its targets; says whether it is.
     pub fn clear(&mut self, item: ResourceId, cell: u32, value: f64) -> bool {
         let MadeWork::Raster(raster) = &mut self.work else { return false };

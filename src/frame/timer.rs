@@ -44,6 +44,8 @@ pub struct Timer {
     period: f64,
     /// Fills are timed from outside passes, where the adapter can.
     fills: bool,
+    /// Whether one compute pass can hold several steps: their times are then marked inside of it.
+    pub joins: bool,
     pub times: Times,
 }
 
@@ -77,6 +79,7 @@ impl Timer {
             sets,
             period: f64::from(gpu.queue.get_timestamp_period()),
             fills: on && gpu.has(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS),
+            joins: on && gpu.has(Features::TIMESTAMP_QUERY_INSIDE_PASSES),
             times: Times { steps: vec![None; steps], ..Times::default() },
             clock,
         }

@@ -115,6 +115,14 @@ pub fn limits(graph: &Graph, limits: &Limits, whose: &str) -> Vec<Problem> {
     problems
 }
 
+/// Bytes that the variables of a workgroup take.
+fn workgroup_bytes(module: &naga::Module) -> u32 {
+    let variables = module.global_variables.iter().map(|(_, variable)| variable);
+    variables.filter(|variable| variable.space == naga::AddressSpace::WorkGroup).fold(0, |bytes, variable| {
+        bytes.saturating_add(module.types[variable.ty].inner.size(module.to_ctx()))
+    })
+}
+
 fn stage_limits(stage: &super::Stage, linked: &super::Linked, limits: &Limits, whose: &str) -> Vec<Problem> {
     use super::Bound as B;
     let count = |wanted: fn(&B) -> bool| linked.bindings.iter().filter(|b| wanted(b)).count() as u32;
@@ -145,6 +153,8 @@ fn stage_limits(stage: &super::Stage, linked: &super::Linked, limits: &Limits, w
         super::Action::Compute { workgroup, .. } => {
             let invocations = workgroup.iter().product();
             uses.push(("threads in a workgroup", invocations, limits.max_compute_invocations_per_workgroup));
+            let memory = workgroup_bytes(&linked.program.module);
+            uses.push(("bytes of workgroup memory", memory, limits.max_compute_workgroup_storage_size));
         }
         super::Action::Raster(raster) => {
             uses.push(("colour targets", raster.targets.len() as u32, limits.max_color_attachments));
