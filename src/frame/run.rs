@@ -109,7 +109,7 @@ impl Frame {
 
     /// Encodes all steps that are to be done. Compute stages that follow one another share a pass, where their times
     /// can be marked inside it: a pass costs the CPU more than a dispatch.
-    fn encode_steps(&self, encoder: &mut CommandEncoder) {
+    fn encode_steps(&mut self, encoder: &mut CommandEncoder) {
         if !self.timer.joins {
             (0..self.ops.len())
                 .filter(|step| self.state.done[*step])
@@ -139,6 +139,7 @@ impl Frame {
                         encode_stage(encoder, stage, self.timer.pass(step), self.parity());
                         continue;
                     }
+                    self.timer.follows[step] = open.is_some();
                     let pass = open.get_or_insert_with(|| {
                         let label = Some("compute");
                         encoder
@@ -146,7 +147,7 @@ impl Frame {
                             .forget_lifetime()
                     });
                     let marks = self.timer.pass(step);
-                    if let Some((set, first)) = marks {
+                    if let (Some((set, first)), false) = (marks, self.timer.follows[step]) {
                         pass.write_timestamp(set, first);
                     }
                     encode_dispatch(pass, stage, self.parity());
@@ -185,8 +186,11 @@ impl Frame {
         self.timer.resolve(&mut encoder);
         gpu.queue.submit(std::iter::once(encoder.finish()));
         let encode = begin.elapsed().as_secs_f64() * 1e3;
-        let ops = &self.ops;
-        self.timer.collect(gpu, &self.state.done, |step| matches!(ops[step], Op::Fill(_)))?;
+        let (ops, fills_marked) = (&self.ops, self.timer.fills);
+        self.timer.collect(gpu, &self.state.done, |step| match &ops[step] {
+            Op::Fill(fills) => fills_marked && !fills.is_empty(),
+            Op::Stage(_) => true,
+        })?;
         self.timer.times.encode = encode;
         Ok(())
     }

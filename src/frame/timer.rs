@@ -43,9 +43,11 @@ pub struct Timer {
     /// Nanoseconds of a tick.
     period: f64,
     /// Fills are timed from outside passes, where the adapter can.
-    fills: bool,
+    pub fills: bool,
     /// Whether one compute pass can hold several steps: their times are then marked inside of it.
     pub joins: bool,
+    /// By step: it follows the step before in one pass, and begins where that one ends.
+    pub follows: Vec<bool>,
     pub times: Times,
 }
 
@@ -80,6 +82,7 @@ impl Timer {
             period: f64::from(gpu.queue.get_timestamp_period()),
             fills: on && gpu.has(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS),
             joins: on && gpu.has(Features::TIMESTAMP_QUERY_INSIDE_PASSES),
+            follows: vec![false; steps],
             times: Times { steps: vec![None; steps], ..Times::default() },
             clock,
         }
@@ -110,12 +113,12 @@ impl Timer {
         encoder.copy_buffer_to_buffer(resolved, 0, read, 0, resolved.size());
     }
 
-    /// Reads the times of a frame that has ended; `done[step]`: the step ran, and `timed(step)`: it was marked.
+    /// Reads the times of a frame that has ended. `done[step]`: the step ran; `marked(step)`: it has its marks then.
     pub fn collect(
         &mut self,
         gpu: &Gpu,
         done: &[bool],
-        is_fill: impl Fn(usize) -> bool,
+        marked: impl Fn(usize) -> bool,
     ) -> Result<(), Problem> {
         let Some(read) = &self.read else { return Ok(()) };
         read.slice(..).map_async(wgpu::MapMode::Read, |_| {});
@@ -130,12 +133,16 @@ impl Timer {
                 let at = 8 * i;
                 bytes.get(at..at + 8).and_then(|b| b.try_into().ok()).map(u64::from_le_bytes)
             };
+            let mut before = None;
             for (step, time) in self.times.steps.iter_mut().enumerate() {
                 *time = None;
-                if !done.get(step).copied().unwrap_or(false) || (is_fill(step) && !self.fills) {
+                if !done.get(step).copied().unwrap_or(false) || !marked(step) {
                     continue;
                 }
-                if let (Some(begin), Some(end)) = (tick(2 * step), tick(2 * step + 1))
+                let begin = if self.follows[step] { before } else { tick(2 * step) };
+                let end = tick(2 * step + 1);
+                before = end;
+                if let (Some(begin), Some(end)) = (begin, end)
                     && begin > 0
                     && end >= begin
                 {
