@@ -10,7 +10,7 @@ use crate::schedule::{Changed, FRAME, Schedule};
 use std::collections::BTreeSet;
 use std::time::Instant;
 use wgpu::{
-    CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor, QuerySet,
+    CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor, ComputePipeline, QuerySet,
     RenderPassDescriptor,
 };
 
@@ -125,6 +125,7 @@ impl Frame {
             }
         }
         let mut open: Option<ComputePass<'static>> = None;
+        let mut bound: Option<&ComputePipeline> = None;
         for step in (0..self.ops.len()).filter(|step| self.state.done[*step]) {
             match &self.ops[step] {
                 Op::Fill(fills) if fills.is_empty() => {}
@@ -140,6 +141,9 @@ impl Frame {
                         continue;
                     }
                     self.timer.follows[step] = open.is_some();
+                    if open.is_none() {
+                        bound = None;
+                    }
                     let pass = open.get_or_insert_with(|| {
                         let label = Some("compute");
                         encoder
@@ -150,7 +154,8 @@ impl Frame {
                     if let (Some((set, first)), false) = (marks, self.timer.follows[step]) {
                         pass.write_timestamp(set, first);
                     }
-                    encode_dispatch(pass, stage, self.parity());
+                    let parity = (self.state.frame % 2) as usize;
+                    encode_dispatch(pass, stage, parity, &mut bound);
                     if let Some((set, first)) = marks {
                         pass.write_timestamp(set, first + 1);
                     }
@@ -277,19 +282,29 @@ fn encode_stage(
             end_of_pass_write_index: Some(first + 1),
         }),
     });
-    encode_dispatch(&mut pass, stage, parity);
+    encode_dispatch(&mut pass, stage, parity, &mut None);
 }
 
-fn encode_dispatch(pass: &mut ComputePass<'_>, stage: &MadeStage, parity: usize) {
+/// `bound`: the pass's pipeline, which is not set again.
+fn encode_dispatch<'a>(
+    pass: &mut ComputePass<'_>,
+    stage: &'a MadeStage,
+    parity: usize,
+    bound: &mut Option<&'a ComputePipeline>,
+) {
+    let (MadeWork::Compute { pipeline, .. } | MadeWork::ComputeIndirect { pipeline, .. }) = &stage.work
+    else {
+        return;
+    };
+    if *bound != Some(pipeline) {
+        pass.set_pipeline(pipeline);
+        *bound = Some(pipeline);
+    }
     pass.set_bind_group(0, stage.group(parity), &[]);
     match &stage.work {
-        MadeWork::Compute { pipeline, groups: [x, y, z] } => {
-            pass.set_pipeline(pipeline);
-            pass.dispatch_workgroups(*x, *y, *z);
-        }
-        MadeWork::ComputeIndirect { pipeline, buffer, offset } => {
-            pass.set_pipeline(pipeline);
-            pass.dispatch_workgroups_indirect(buffer, *offset);
+        MadeWork::Compute { groups: [x, y, z], .. } => pass.dispatch_workgroups(*x, *y, *z),
+        MadeWork::ComputeIndirect { buffer, offset, .. } => {
+            pass.dispatch_workgroups_indirect(buffer, *offset)
         }
         MadeWork::Raster(_) => {}
     }
