@@ -67,7 +67,10 @@ fn still_voxels_are_kept_under_a_moving_camera() {
         assert!(found.is_empty(), "{pipeline}: {found:?}");
 
         let stages = record::stages(&run.frame, &samples);
-        let with = |word: &str| stages.iter().filter(|s| s.path.contains(word)).collect::<Vec<_>>();
+        let with = |word: &str| {
+            // A grid has an odd or an even number of mip levels, and no stages for the other.
+            stages.iter().filter(|s| s.path.contains(word) && s.status != "dropped").collect::<Vec<_>>()
+        };
         let still: Vec<_> = ["voxelize/", "storage/", "light/", "mipmap_reflected/"].map(with).concat();
         assert!(still.len() >= 4, "{pipeline}: {still:?}");
         for stage in still {
