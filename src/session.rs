@@ -104,7 +104,7 @@ pub fn prepare(request: &Request, library: &Library, scene: Option<&Scene>) -> R
         reuse: request.reuse,
         drop: request.drop,
         keep: request.keep,
-        varying: request.varying.clone(),
+        varying: with_values(&graph.plan, &request.varying),
     };
     let work = graph::work::work(&graph);
     let scheduled = |options: &schedule::Options| {
@@ -127,6 +127,17 @@ pub fn prepare(request: &Request, library: &Library, scene: Option<&Scene>) -> R
         camera: request.camera,
         warnings,
     })
+}
+
+/// What may change, and with it the values that depend on it.
+fn with_values(plan: &plan::Plan, varying: &BTreeSet<u32>) -> BTreeSet<u32> {
+    let mut all = varying.clone();
+    for (index, value) in plan.values.iter().enumerate() {
+        if value.causes.iter().any(|cause| varying.contains(&graph::facts::bit(*cause))) {
+            all.insert(graph::facts::value_bit(index));
+        }
+    }
+    all
 }
 
 fn reruns(schedule: &Schedule) -> Vec<BTreeSet<u32>> {
@@ -217,24 +228,29 @@ impl Prepared {
         }
         table.put_views(&scene.views);
         for (index, value) in graph.plan.values.iter().enumerate() {
-            match &value.value {
-                Value::Number(number) => table.put_value(index, 0, *number),
-                Value::Flag(flag) => table.put_value(index, 0, f64::from(u8::from(*flag))),
-                Value::Vector(numbers) => {
-                    numbers.iter().enumerate().for_each(|(i, number)| table.put_value(index, i, *number));
-                }
-                Value::Text(_) => {}
-                Value::Unknown => {
-                    return Err(Problem::input(
-                        "unknown-value",
-                        format!("the value `{}` depends on what changes within a run", value.path),
-                    )
-                    .at(&value.place, "declared here")
-                    .help("read the uniform `frame` in the kernel instead")
-                    .into());
-                }
+            put_value(table, index, &value.value);
+            if value.value == Value::Unknown {
+                return Err(Problem::input(
+                    "unknown-value",
+                    format!("the value `{}` depends on what changes within a run", value.path),
+                )
+                .at(&value.place, "declared here")
+                .help("read the uniform `frame` in the kernel instead")
+                .into());
             }
         }
         Ok(frame)
+    }
+}
+
+/// Tells kernels the value `index` of the plan's; those that are no numbers, kernels can't see.
+pub fn put_value(table: &mut graph::facts::FactTable, index: usize, value: &Value) {
+    match value {
+        Value::Number(number) => table.put_value(index, 0, *number),
+        Value::Flag(flag) => table.put_value(index, 0, f64::from(u8::from(*flag))),
+        Value::Vector(numbers) => {
+            numbers.iter().enumerate().for_each(|(i, number)| table.put_value(index, i, *number));
+        }
+        Value::Text(_) | Value::Unknown => {}
     }
 }
