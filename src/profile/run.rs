@@ -30,7 +30,6 @@ pub struct Course {
 pub struct Move {
     camera: CameraUniform,
     values: Vec<Value>,
-    /// What is not as in the frame before.
     changes: Changes,
 }
 
@@ -64,6 +63,11 @@ pub fn moves(frame: &Frame, cameras: &[Camera], aspect: f64, changes: &Changes) 
 }
 
 impl Move {
+    /// What is not as in the frame before.
+    pub fn changes(&self) -> &Changes {
+        &self.changes
+    }
+
     fn apply(&self, frame: &mut Frame) {
         let table = frame.facts();
         table.put_camera(&self.camera);
