@@ -115,19 +115,23 @@ pub struct View {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct CameraUniform {
-    /// World to clip space, depth 1 at `near` and 0 at infinity.
+    /// World to clip space, depth 1 at `near` and 0 at infinity (orthographic: at the far plane).
     pub view_projection: Mat4,
     pub inverse_view_projection: Mat4,
     pub position: Vec3,
     pub near: f32,
-    /// Unit vector. The ray through (x, y) of [−1, 1]², y up, has the direction `forward + x * right + y * up`.
+    /// Unit vector. The ray through (x, y) of [−1, 1]², y up, begins at `position` and has the direction
+    /// `forward + x * right + y * up`; if `parallel`, it begins at `position + x * right + y * up` and goes `forward`.
     pub forward: Vec3,
     /// Width over height.
     pub aspect: f32,
     pub right: Vec3,
-    pub pad_right: u32,
+    /// 1 for an orthographic camera, else 0.
+    pub parallel: f32,
     pub up: Vec3,
     pub pad_up: u32,
+    /// Distance along `forward` from depth d: `(x + y * d) / (z + w * d)`.
+    pub distance: Vec4,
 }
 
 /// WGSL type of a field.
@@ -136,6 +140,7 @@ pub enum FieldKind {
     F32,
     U32,
     Vec3F,
+    Vec4F,
     Vec4U,
     Mat3x3F,
     Mat4x3F,
@@ -148,7 +153,7 @@ impl FieldKind {
         match self {
             FieldKind::F32 | FieldKind::U32 => 4,
             FieldKind::Vec3F => 12,
-            FieldKind::Vec4U => 16,
+            FieldKind::Vec4F | FieldKind::Vec4U => 16,
             FieldKind::Mat3x3F => 48,
             FieldKind::Mat4x3F | FieldKind::Mat4x4F => 64,
         }
@@ -159,6 +164,7 @@ impl FieldKind {
             FieldKind::F32 => "f32",
             FieldKind::U32 => "u32",
             FieldKind::Vec3F => "vec3f",
+            FieldKind::Vec4F => "vec4f",
             FieldKind::Vec4U => "vec4u",
             FieldKind::Mat3x3F => "mat3x3f",
             FieldKind::Mat4x3F => "mat4x3f",
@@ -219,7 +225,7 @@ static VIEW: StructLayout = layout_of!(View as "View" {
 });
 static CAMERA: StructLayout = layout_of!(CameraUniform as "Camera" {
     view_projection: Mat4x4F, inverse_view_projection: Mat4x4F, position: Vec3F, near: F32, forward: Vec3F,
-    aspect: F32, right: Vec3F, up: Vec3F
+    aspect: F32, right: Vec3F, parallel: F32, up: Vec3F, distance: Vec4F
 });
 static TEXEL: StructLayout = StructLayout { name: "u32", stride: 4, fields: &[] };
 

@@ -21,7 +21,7 @@ const WGSL: &str = "
     }
     struct Camera {
         view_projection: mat4x4f, inverse_view_projection: mat4x4f, position: vec3f, near: f32,
-        forward: vec3f, aspect: f32, right: vec3f, up: vec3f,
+        forward: vec3f, aspect: f32, right: vec3f, parallel: f32, up: vec3f, distance: vec4f,
     }
 ";
 
@@ -52,7 +52,7 @@ fn tables_are_what_wgsl_lays_out() {
 #[test]
 fn kinds_are_named_as_wgsl_names_them() {
     use FieldKind::*;
-    for kind in [F32, U32, Vec3F, Vec4U, Mat3x3F, Mat4x3F, Mat4x4F] {
+    for kind in [F32, U32, Vec3F, Vec4F, Vec4U, Mat3x3F, Mat4x3F, Mat4x4F] {
         let module = naga::front::wgsl::parse_str(&format!("struct S {{ field: {} }}", kind.wgsl())).unwrap();
         let member = module.types.iter().find_map(|(_, ty)| match &ty.inner {
             naga::TypeInner::Struct { members, .. } => Some(members[0].ty),
@@ -79,8 +79,8 @@ fn features_are_those_that_are_named() {
     let kinds: Vec<_> = features.iter().map(|(name, feature)| (*name, feature.kind())).collect();
     let named: Vec<_> = features::NAMES.iter().map(|feature| (feature.name, feature.kind)).collect();
     assert_eq!(kinds, named);
-    let wanted = "scene.triangles scene.vertices scene.materials scene.instances scene.min scene.max \
+    let wanted = "scene.triangles scene.still_triangles scene.vertices scene.materials scene.instances scene.min scene.max \
         scene.emissive scene.max_emission scene.textured scene.masked scene.double_sided scene.min_roughness scene.max_metallic \
-        scene.moving lights.point lights.spot lights.directional lights.total views.total cameras.total";
+        scene.moving scene.duration lights.point lights.spot lights.directional lights.total views.total cameras.total";
     assert_eq!(named.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" "), wanted);
 }
