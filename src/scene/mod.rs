@@ -40,7 +40,7 @@ pub use camera::{Camera, Lens};
 pub use image::Image;
 
 use crate::problem::{Problem, Result};
-use layout::{Instance, Light, Material, Triangle, Vertex, View};
+use layout::{Instance, Light, Material, Triangle, Vertex, VertexExtra, View};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -52,6 +52,8 @@ pub struct Scene {
     /// All files that were read; the scene changes only if one of them does.
     pub files: Vec<PathBuf>,
     pub vertices: Vec<Vertex>,
+    /// As many as vertices, or none where no vertex needs any.
+    pub vertex_extras: Vec<VertexExtra>,
     /// Those that some motion moves come last.
     pub triangles: Vec<Triangle>,
     /// How many triangles come before those that move.

@@ -1,8 +1,9 @@
 //! glTF 2.0, `.gltf` and `.glb`.
 //!
-//! Read are: meshes of triangles, strips and fans with positions, normals and one set of texture coordinates (plain,
-//! quantized or sparse accessors); node transforms; metallic-roughness materials with the images of colour and emission;
-//! alpha masks; punctual lights; cameras; animations of nodes. The rest that a file has is counted in [`Scene::lacks`].
+//! Read are: meshes of triangles, strips and fans with positions, normals, tangents, a set of colours and two sets of
+//! texture coordinates (plain, quantized or sparse accessors); node transforms; metallic-roughness materials with their
+//! images and texture transforms; alpha masks; punctual lights; cameras; animations of nodes. The rest that a file has is
+//! counted in [`Scene::lacks`].
 //!
 //! A file is never trusted: lengths, indices and numbers are checked where they are used, URIs stay in the file's
 //! own folder, and what a small file can blow up to has a limit. All faults that are found are reported, each with
@@ -11,14 +12,19 @@
 mod accessor;
 mod animation;
 mod container;
+mod corners;
 mod file;
+mod lookup;
 mod material;
 mod mesh;
 mod nodes;
 mod notes;
+mod picture;
 mod punctual;
+mod tangents;
 mod texture;
 pub(super) mod uri;
+mod vertices;
 
 use super::Scene;
 use super::layout::{Instance, Triangle};
@@ -27,8 +33,8 @@ use crate::problem::{Problem, Problems, Result};
 use file::File;
 pub(super) use file::read;
 use gltf::json::Root;
-use gltf::json::mesh::{Mesh, Primitive, Semantic};
-use gltf::json::validation::Checked;
+use gltf::json::mesh::{Mesh, Primitive};
+use lookup::Needs;
 use mesh::Meshes;
 use nodes::{Movers, Placed};
 use notes::{Fault, Notes};
@@ -71,7 +77,7 @@ pub(super) fn load(path: &Path, added: &[motion::Request]) -> Result<Scene> {
     nodes.iter().for_each(|placed| builder.place(placed));
     named(&file.root, &nodes, added)?;
     let Builder { mut scene, used, meshes, .. } = builder;
-    scene.vertices = meshes.vertices;
+    (scene.vertices, scene.vertex_extras) = meshes.finish();
     scene.sort_moving();
     let mut textures = Textures::default();
     let materials = std::mem::take(&mut file.root.materials);
@@ -81,7 +87,8 @@ pub(super) fn load(path: &Path, added: &[motion::Request]) -> Result<Scene> {
             material::finish(material, json, &pointer, &mut file, &mut textures, &mut notes);
         }
     }
-    (scene.texels, scene.images, scene.files) = (textures.texels, textures.images, file.read);
+    (scene.images, scene.texels) = textures.decode(&file, &mut notes);
+    scene.files = file.read;
     match scene.bounds_over_time() {
         Some(bounds) => scene.bounds = bounds,
         None => {
@@ -111,6 +118,8 @@ struct Builder<'a> {
     meshes: Meshes,
     /// For each material whether a primitive has it; the last one is the default material, which is not yet there.
     used: Vec<bool>,
+    /// What each of them takes from vertices.
+    needs: Vec<Needs>,
 }
 
 impl<'a> Builder<'a> {
@@ -119,8 +128,11 @@ impl<'a> Builder<'a> {
         let read = |(i, json)| material::read(json, &format!("/materials/{i}"), notes);
         let materials: Vec<_> = root.materials.iter().enumerate().map(read).collect();
         let used = vec![false; materials.len() + 1];
+        let mut needs: Vec<Needs> =
+            root.materials.iter().map(|json| Needs::of(&lookup::lookups(json))).collect();
+        needs.push(Needs::default());
         let scene = Scene { name, materials, ..Scene::default() };
-        Self { file, notes, scene, meshes: Meshes::default(), used }
+        Self { file, notes, scene, meshes: Meshes::default(), used, needs }
     }
 
     /// Adds what a node carries.
@@ -168,26 +180,18 @@ impl<'a> Builder<'a> {
         at: (usize, usize),
         primitive: &Primitive,
     ) -> Result<(), Fault> {
-        let materials = &self.file.root.materials;
-        let (material, uv_set) = match primitive.material.map(|material| material.value()) {
-            None => (materials.len(), None),
-            Some(index) => {
-                let json = materials.get(index);
-                let json = json.ok_or_else(|| Fault::beyond("material", index, materials.len()))?;
-                (index, material::uv_set(json))
-            }
+        let materials = self.file.root.materials.len();
+        let material = primitive.material.map_or(materials, |material| material.value());
+        let needs = match self.needs.get(material) {
+            Some(needs) if primitive.material.is_none() || material < materials => needs,
+            _ => return Err(Fault::beyond("material", material, materials)),
         };
-        let Some(corners) = self.meshes.part(self.file, mesh, at, uv_set, self.notes) else { return Ok(()) };
+        let Some(corners) = self.meshes.part(self.file, mesh, at, needs, self.notes) else { return Ok(()) };
         if self.scene.triangles.len() + corners.len() > MOST_TRIANGLES {
             return Err(Fault::new(
                 "gltf-size",
                 format!("the scene has more than {MOST_TRIANGLES} triangles"),
             ));
-        }
-        for semantic in primitive.attributes.keys() {
-            if matches!(semantic, Checked::Valid(Semantic::Colors(_))) {
-                self.notes.lack("set of vertex colours", "left out");
-            }
         }
         if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
             self.notes.lack("morphed primitive", "drawn at rest");
