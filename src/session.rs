@@ -9,8 +9,9 @@ use crate::graph::{self, Graph, Linking};
 use crate::kernel::Variants;
 use crate::library::Library;
 use crate::plan;
+use crate::play;
 use crate::problem::{Problem, Problems, Result};
-use crate::scene::{self, Scene, features};
+use crate::scene::{self, Bounds, Camera, Scene, features};
 use crate::schedule::{self, Schedule, schedule};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -204,9 +205,8 @@ fn facts(request: &Request, scene: Option<&Scene>) -> BTreeMap<String, Value> {
         facts.insert(name.to_owned(), value);
     }
     let camera = scene.and_then(|s| s.cameras.get(request.camera));
-    let vector = |v: Option<glam::DVec3>| v.map_or(Value::Unknown, |v| Value::Vector(v.to_array().to_vec()));
-    facts.insert("camera.position".to_owned(), vector(camera.map(|c| c.position)));
-    facts.insert("camera.forward".to_owned(), vector(camera.map(|c| c.forward)));
+    let seen = play::features(camera.unwrap_or(&Camera::framing(&Bounds::default())));
+    facts.extend(seen.into_iter().map(|(name, value)| (name, camera.map_or(Value::Unknown, |_| value))));
     facts
 }
 
@@ -228,7 +228,6 @@ impl Prepared {
         }
         table.put_views(&scene.views);
         for (index, value) in graph.plan.values.iter().enumerate() {
-            put_value(table, index, &value.value);
             if value.value == Value::Unknown {
                 return Err(Problem::input(
                     "unknown-value",
@@ -238,19 +237,8 @@ impl Prepared {
                 .help("read the uniform `frame` in the kernel instead")
                 .into());
             }
+            table.put_value(index, &value.value);
         }
         Ok(frame)
-    }
-}
-
-/// Tells kernels the value `index` of the plan's; those that are no numbers, kernels can't see.
-pub fn put_value(table: &mut graph::facts::FactTable, index: usize, value: &Value) {
-    match value {
-        Value::Number(number) => table.put_value(index, 0, *number),
-        Value::Flag(flag) => table.put_value(index, 0, f64::from(u8::from(*flag))),
-        Value::Vector(numbers) => {
-            numbers.iter().enumerate().for_each(|(i, number)| table.put_value(index, i, *number));
-        }
-        Value::Text(_) | Value::Unknown => {}
     }
 }

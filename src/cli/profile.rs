@@ -6,15 +6,18 @@ mod table;
 
 use super::run::{RunArgs, Started, progress, to_json};
 use super::{print, print_json};
+use crate::device::Gpu;
 use crate::document::Cause;
+use crate::frame::{Changes, Frame, Times};
 use crate::graph::facts;
 use crate::picture::write_bytes;
 use crate::problem::{Problem, Result};
-use crate::profile::run::{Course, Ran, moves, run as run_course};
+use crate::profile::run::{Course, Ran, Subject, run as run_course};
 use crate::profile::{Profile, copy, trace};
 use crate::scene::Camera;
 use camera::CameraArgs;
 use clap::Args;
+use indicatif::ProgressBar;
 use std::path::{Path, PathBuf};
 
 /// Frames that count, unless it is said.
@@ -64,13 +67,24 @@ pub fn run(args: &ProfileArgs) -> Result<()> {
     let mut started = args.run.start(ready, None)?;
     #[cfg(feature = "tracy")]
     let mut tracy = crate::profile::tracy::Tracks::start(&started.frame);
-    let ran = sample(args, &mut started, frames, cameras.as_deref(), |_frame, _times, _counters| {
-        #[cfg(feature = "tracy")]
-        tracy.frame(_frame, _times, _counters);
-    })?;
+    let ran = {
+        let bar = progress(u64::from(frames) + u64::from(args.warm_up) + 1);
+        let counters = args.trace.is_some() || args.out.is_some() || cfg!(feature = "tracy");
+        let course = Course { warm_up: args.warm_up, frames, counters };
+        let mut subject = Watched {
+            started: &mut started,
+            cameras: cameras.as_deref(),
+            bar: &bar,
+            #[cfg(feature = "tracy")]
+            tracy: &mut tracy,
+        };
+        let ran = run_course(&mut subject, course);
+        bar.finish_and_clear();
+        ran?
+    };
     let copy = copy::measure(&started.gpu, &started.clock)?;
     let record = started.record(&args.run, &ran.samples)?;
-    let mut profile = Profile::new(record, &started.frame, &started.scene, &ran.samples, copy);
+    let mut profile = Profile::new(record, &started.frame, started.scene(), &ran.samples, copy);
     profile.warm_up = args.warm_up;
     profile.changes = changes(&started);
     profile.camera_moves = path.map(|path| path.to_string());
@@ -87,35 +101,43 @@ fn folder_is_there(file: &Path) -> bool {
     file.parent().is_some_and(|folder| folder.as_os_str().is_empty() || folder.is_dir())
 }
 
-/// Runs all frames behind a progress bar.
-fn sample(
-    args: &ProfileArgs,
-    started: &mut Started,
-    frames: u32,
-    cameras: Option<&[Camera]>,
-    mut after: impl FnMut(&crate::frame::Frame, &crate::frame::Times, &[(String, u32)]),
-) -> Result<Ran> {
-    let [width, height] = args.run.pipeline_args.size.map(f64::from);
-    let moves = cameras
-        .map(|cameras| moves(&started.frame, cameras, width / height, &started.changes))
-        .transpose()?;
-    let counters = args.trace.is_some() || args.out.is_some() || cfg!(feature = "tracy");
-    let changes = started.changes.clone();
-    let course = Course { warm_up: args.warm_up, frames, changes, moves, counters };
-    let bar = progress(u64::from(frames) + u64::from(args.warm_up) + 1);
-    let ran = run_course(&mut started.frame, &started.gpu, &course, |frame, times, counters| {
-        bar.inc(1);
-        after(frame, times, counters);
-    });
-    bar.finish_and_clear();
-    Ok(ran?)
+/// Frames behind a progress bar, with the scene and the camera moving as was asked.
+struct Watched<'a> {
+    started: &'a mut Started,
+    /// One for each frame that counts.
+    cameras: Option<&'a [Camera]>,
+    bar: &'a ProgressBar,
+    #[cfg(feature = "tracy")]
+    tracy: &'a mut crate::profile::tracy::Tracks,
+}
+
+impl Subject for Watched<'_> {
+    fn before(&mut self, counted: Option<u32>) -> Result<Changes> {
+        match counted {
+            None => Ok(self.started.changes.clone()),
+            Some(index) => {
+                let camera = self.cameras.and_then(|cameras| cameras.get(index as usize));
+                self.started.go_to(index + 1, camera)
+            }
+        }
+    }
+
+    fn frame(&mut self) -> (&mut Frame, &Gpu) {
+        (&mut self.started.frame, &self.started.gpu)
+    }
+
+    fn after(&mut self, _times: &Times, _counters: &[(String, u32)]) {
+        self.bar.inc(1);
+        #[cfg(feature = "tracy")]
+        self.tracy.frame(&self.started.frame, _times, _counters);
+    }
 }
 
 /// The names of what changes between frames, if not everything does.
 fn changes(started: &Started) -> Option<Vec<String>> {
     match &started.changes {
-        crate::frame::Changes::All => None,
-        crate::frame::Changes::Only(bits) => {
+        Changes::All => None,
+        Changes::Only(bits) => {
             Some(bits.iter().map(|bit| facts::name_of_bit(&started.frame.graph.plan, *bit)).collect())
         }
     }

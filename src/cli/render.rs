@@ -2,7 +2,7 @@
 
 use super::outputs::{Target, Writer};
 use super::run::{RunArgs, Started, heading, progress, to_json};
-use super::{print, print_json};
+use super::{print, print_json, savings};
 use crate::frame::Poison;
 use crate::picture::{self, Curve};
 use crate::problem::{Problem, Result};
@@ -41,6 +41,9 @@ pub struct RenderArgs {
     /// Look for the first stage that writes NaN or infinities.
     #[arg(long)]
     scan: bool,
+    /// Measure what each stage that was kept or dropped takes when it runs.
+    #[arg(long)]
+    savings: bool,
     /// Print the record as one JSON object.
     #[arg(long)]
     pub json: bool,
@@ -79,6 +82,9 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     let mut record = started.record(&args.run, &samples)?;
     record.outputs = outputs;
     record.scan = scan;
+    if args.savings {
+        savings::measure(&mut record.stages, &args.run, &started)?;
+    }
     if let Some(folder) = &args.out {
         let path = folder.join("record.json");
         picture::write_bytes(&path, format!("{:#}\n", to_json(&record)?).as_bytes())?;
@@ -102,22 +108,24 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     }
 }
 
-/// The first frame apart, then, from the same state, the frames that count; or the first frame alone.
+/// The first frame apart, then, from the same state, the frames that count, which the scene's motion goes on with; or
+/// the first frame alone.
 fn sample(started: &mut Started, frames: Option<u32>) -> Result<Samples> {
-    let Started { frame, gpu, changes, .. } = started;
     let bar = progress(u64::from(frames.unwrap_or(0)) + 1);
-    let first = frame.run(gpu, changes)?.clone();
+    let changes = started.changes.clone();
+    let first = started.frame.run(&started.gpu, &changes)?.clone();
     bar.inc(1);
     let mut samples = Samples { first: Some(first.clone()), frames: Vec::new() };
     match frames {
         None => samples.frames.push(first),
         Some(frames) => {
             // What is kept stays kept; only a pipeline that goes on from frame to frame starts again.
-            if frame.goes_on() {
-                frame.reset();
+            if started.frame.goes_on() {
+                started.frame.reset();
             }
-            for _ in 0..frames {
-                samples.frames.push(frame.run(gpu, changes)?.clone());
+            for index in 1..=frames {
+                let changes = started.go_to(index, None)?;
+                samples.frames.push(started.frame.run(&started.gpu, &changes)?.clone());
                 bar.inc(1);
             }
         }
@@ -152,7 +160,10 @@ fn table(record: &Record) -> String {
                 ms(stage.gpu_ms),
                 ms(stage.first_use_ms)
             )),
-            Some(reason) => line(format_args!("{:<widest$}  {:>9}  {reason}", stage.path, stage.status)),
+            Some(reason) => {
+                let saved = stage.saved_ms.map_or_else(String::new, |saved| format!("; saves {saved:.3}"));
+                line(format_args!("{:<widest$}  {:>9}  {reason}{saved}", stage.path, stage.status));
+            }
         }
     }
     line(format_args!("{:<widest$}  {:>9}", "fills", ms(record.fills_ms)));

@@ -3,13 +3,14 @@
 use super::{PipelineArgs, tell};
 use crate::device::{Gpu, LimitSet};
 use crate::frame::{Changes, Clock, Frame, Poison, calibrate};
+use crate::play::Play;
 use crate::problem::{Problem, Result};
 use crate::record::{self, Record, Samples};
-use crate::scene::{self, Scene};
+use crate::scene::{Camera, Scene};
 use crate::session::{Prepared, Request, prepare};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 #[derive(Args)]
@@ -41,7 +42,9 @@ pub struct Ready {
 
 /// A frame that can be run.
 pub struct Started {
-    pub scene: Scene,
+    pub play: Play,
+    /// Where the scene's motion begins, in seconds, and how many frames a second of it has, if it is played.
+    motion: (f64, Option<f64>),
     pub gpu: Gpu,
     pub frame: Frame,
     pub clock: Clock,
@@ -53,8 +56,8 @@ impl RunArgs {
     /// Loads, plans and schedules; `adjust` has the last word on the request. Warnings are told.
     pub fn prepare(&self, adjust: impl FnOnce(&mut Request)) -> Result<Ready> {
         let library = self.pipeline_args.library()?;
-        let scene = scene::load(&self.scene)?;
-        let mut request = self.pipeline_args.request(&self.pipeline);
+        let scene = self.pipeline_args.scene(&self.scene)?;
+        let mut request = self.pipeline_args.request_for(&self.pipeline, &scene);
         adjust(&mut request);
         let prepared = prepare(&request, &library, Some(&scene))?;
         prepared.warnings.iter().for_each(tell);
@@ -71,18 +74,46 @@ impl RunArgs {
             false => calibrate::choose(&gpu)?,
         };
         let changes = match request.keep {
-            true => Changes::Only(request.varying),
+            true => Changes::Only(request.varying.clone()),
             false => Changes::All,
         };
         let warnings = prepared.warnings.clone();
         let frame = prepared.realise(&gpu, &scene, clock.clone(), poison)?;
-        Ok(Started { scene, gpu, frame, clock, changes, warnings })
+        let camera = scene.cameras.get(request.camera).cloned();
+        let camera = camera.unwrap_or_else(|| Camera::framing(&scene.bounds));
+        let play = Play::new(scene, camera, request.size, &frame);
+        let motion = (self.pipeline_args.time, self.pipeline_args.play);
+        Ok(Started { play, motion, gpu, frame, clock, changes, warnings })
     }
 }
 
 impl Started {
+    /// The scene as it is now.
+    pub fn scene(&self) -> &Scene {
+        &self.play.scene
+    }
+
+    /// Brings the scene, if it is played, to the frame of this number, and looks through `camera`, if there is one; says
+    /// what is not as it was.
+    pub fn go_to(&mut self, index: u32, camera: Option<&Camera>) -> Result<Changes> {
+        let (start, rate) = self.motion;
+        let mut bits = match rate {
+            Some(rate) => self.play.go_to(&mut self.frame, &self.gpu, start + f64::from(index) / rate)?,
+            None => BTreeSet::new(),
+        };
+        if let Some(camera) = camera {
+            bits.extend(self.play.look(&mut self.frame, camera)?);
+        }
+        Ok(match &self.changes {
+            Changes::All => Changes::All,
+            // What is said to change does so without being looked at.
+            Changes::Only(said) if rate.is_none() => Changes::Only(bits.union(said).copied().collect()),
+            Changes::Only(_) => Changes::Only(bits),
+        })
+    }
+
     pub fn record(&self, args: &RunArgs, samples: &Samples) -> Result<Record> {
-        let (plan, scene, frame) = (&self.frame.graph.plan, &self.scene, &self.frame);
+        let (plan, scene, frame) = (&self.frame.graph.plan, self.scene(), &self.frame);
         let (clock, clock_reason) = record::clock(&self.clock);
         let [width, height] = args.pipeline_args.size;
         Ok(Record {
@@ -106,7 +137,7 @@ impl Started {
             stages: record::stages(frame, samples),
             counters: frame.counters(&self.gpu)?.into_iter().collect(),
             memory: record::memory(frame),
-            lacks: scene.lacks.iter().map(ToString::to_string).collect(),
+            lacks: record::lacks(scene, &frame.graph),
             warnings: self.warnings.iter().map(Problem::to_json).collect(),
             outputs: BTreeMap::new(),
             scan: None,

@@ -174,7 +174,7 @@ fn the_checker_refuses_broken_traces() {
     let names = ["p/x".to_owned(), "p/y".to_owned()];
     let good = serde_json::to_value(build(&names, &[times], &[], tick, &ABOUT)).expect("JSON");
     let (slices, _) = read(&good).expect("a trace");
-    assert!(slices.iter().any(|slice| slice.track == "GPU 2"), "what overlaps is apart: {slices:?}");
+    assert!(slices.iter().any(|slice| slice.track == "GPU, overlap 1"), "what overlaps is apart: {slices:?}");
     let count = good["traceEvents"].as_array().expect("events").len();
     for index in 0..count {
         let mut broken = good.clone();

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use voxgi::device::{Gpu, LimitSet};
-use voxgi::frame::{Changes, Clock, Frame};
+use voxgi::frame::{Clock, Frame};
 use voxgi::library::Library;
 use voxgi::scene::{self, Scene};
 use voxgi::session::{Prepared, Request, prepare};
@@ -38,14 +38,8 @@ pub fn prepared(scene: &Scene, pipeline: &str, size: [u32; 2], varying: Option<B
     prepare(&request, &library, Some(scene)).expect("a pipeline that is right")
 }
 
-/// The same, ready to run on the test's device, and what changes between its frames.
-pub fn started(
-    scene: &Scene,
-    pipeline: &str,
-    size: [u32; 2],
-    varying: Option<BTreeSet<u32>>,
-) -> (Frame, Changes) {
-    let changes = varying.clone().map_or(Changes::All, Changes::Only);
+/// The same, ready to run on the test's device.
+pub fn started(scene: &Scene, pipeline: &str, size: [u32; 2], varying: Option<BTreeSet<u32>>) -> Frame {
     let frame = prepared(scene, pipeline, size, varying).realise(gpu(), scene, Clock::Timestamps, None);
-    (frame.expect("a frame"), changes)
+    frame.expect("a frame")
 }

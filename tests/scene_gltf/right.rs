@@ -3,8 +3,8 @@
 use crate::documents::{TRIANGLE, data_uri, document, floats, load, triangle};
 use glam::{UVec4, Vec3, Vec4};
 use serde_json::json;
-use voxgi::scene::Scene;
 use voxgi::scene::layout::{DOUBLE_SIDED, UNLIT};
+use voxgi::scene::{Lens, Scene};
 
 /// Corners of all triangles in the world, in order.
 fn world(scene: &Scene) -> Vec<[Vec3; 3]> {
@@ -178,7 +178,7 @@ fn textures_that_are_used() {
     document["materials"] = json!([
         {
             "pbrMetallicRoughness": {"baseColorTexture": {"index": 1}},
-            "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 2}, "normalTexture": {"index": 0},
+            "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 2}, "occlusionTexture": {"index": 0},
         },
         {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}},
     ]);
@@ -193,7 +193,10 @@ fn textures_that_are_used() {
     assert_eq!(scene.materials[0].emission_image, UVec4::new(0, 2, 1, srgb | levels | sampler));
     assert_eq!(
         lacks(&scene),
-        ["1 texture coordinate that is not finite is set to 0", "1 normal map is left out"]
+        [
+            "1 texture coordinate that is not finite is set to 0",
+            "1 occlusion texture is not applied: occlusion is simulated"
+        ]
     );
     assert_eq!((scene.vertices[1].u, scene.vertices[2].v), (1.0, 0.0));
 }
@@ -228,7 +231,8 @@ fn lights_and_cameras_of_nodes() {
     assert!((spot.cos_inner - 0.5f32.cos()).abs() < 1e-6 && (spot.cos_outer - 1f32.cos()).abs() < 1e-6);
     assert_eq!((sun.kind, sun.direction, sun.intensity), (2, Vec3::NEG_Z, Vec3::splat(3.0)));
     let camera = &scene.cameras[0];
-    assert_eq!((camera.name.as_str(), camera.vertical_fov, camera.near), ("eye", 1.0, 0.25));
+    let lens = Lens::Perspective { vertical_fov: 1.0 };
+    assert_eq!((camera.name.as_str(), camera.lens, camera.near), ("eye", lens, 0.25));
     assert!((camera.forward.as_vec3() - Vec3::Y).length() < 1e-6);
     assert!((camera.up.as_vec3() - Vec3::Z).length() < 1e-6);
 }
@@ -239,6 +243,7 @@ fn what_is_lacking_is_said() {
     let positions = document["accessors"][0].clone();
     document["accessors"] = json!([positions, positions]);
     document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(1);
+    document["meshes"][0]["primitives"][0]["attributes"]["COLOR_1"] = json!(1);
     document["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 0}]);
     document["meshes"][0]["primitives"][0]["material"] = json!(0);
     let glass = json!({"extensions": {"KHR_materials_transmission": {}, "KHR_materials_sheen": {}}, "alphaMode": "BLEND"});
@@ -256,10 +261,10 @@ fn what_is_lacking_is_said() {
     assert_eq!(
         found,
         [
-            "1 animation is not played",
+            "1 animation of something that is no node is not played",
             "1 primitive of points or lines is left out",
             "2 morphed primitives are drawn at rest",
-            "2 sets of vertex colours are left out",
+            "2 second sets of vertex colours are left out",
             "2 translucent materials are rendered opaque",
             "2 transmissive materials are rendered opaque",
             "2 uses of KHR_materials_sheen are left out",

@@ -18,7 +18,7 @@ mod read;
 pub mod spline;
 
 use crate::problem::{Place, Problem, Result, Source};
-use crate::scene::{Bounds, Camera};
+use crate::scene::{Bounds, Camera, Lens};
 use glam::{DQuat, DVec3};
 
 /// Where the camera is in each frame of a run.
@@ -92,15 +92,22 @@ impl CameraPath {
             .keys
             .iter()
             .map(|key| {
-                let fov = key.fov.unwrap_or(base.vertical_fov);
-                (key.at, [(fov * 0.5).tan().ln()])
+                let half = key.fov.map_or(base.lens.half_height(), |fov| (fov * 0.5).tan());
+                (key.at, [half.ln()])
             })
             .collect();
         let zoom = spline::curve(&zooms, at).map_or(0.0, |[zoom]| zoom);
         let camera = Camera::looking(&base.name, eye, look_at - eye, DVec3::Y);
         let camera = camera.filter(|_| eye.as_vec3().is_finite() && look_at.as_vec3().is_finite());
         match camera {
-            Some(camera) => Ok(Camera { vertical_fov: 2.0 * zoom.exp().atan(), near: base.near, ..camera }),
+            Some(camera) => {
+                // An orthographic camera stays one unless the path gives angles.
+                let lens = match base.lens {
+                    Lens::Orthographic { .. } if self.keys.iter().all(|key| key.fov.is_none()) => base.lens,
+                    _ => Lens::Perspective { vertical_fov: 2.0 * zoom.exp().atan() },
+                };
+                Ok(Camera { lens, near: base.near, ..camera })
+            }
             None => {
                 let before = self.keys.iter().rfind(|key| key.at <= at).or(self.keys.first());
                 let problem =
