@@ -38,7 +38,7 @@ const FIELDS: [Field; 20] = [
     ("/clock", Value::is_string),
     ("/pipeline", Value::is_string),
     ("/scene", Value::is_string),
-    ("/knobs/resolution", |v| v == 16.0),
+    ("/knobs/grid.resolution", |v| v == 16.0),
     ("/frames", |v| v == 3),
     ("/warm_up", |v| v == 2),
     ("/frame_samples_ms", |v| all(v, Value::is_f64)),
