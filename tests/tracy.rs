@@ -92,10 +92,11 @@ fn the_profiler_gets_zones_plots_and_frames() {
     // A port that was free a moment ago.
     let port =
         TcpListener::bind((Ipv6Addr::LOCALHOST, 0)).and_then(|l| l.local_addr()).expect("a port").port();
-    let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell-box.glb");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let program = Command::new(env!("CARGO_BIN_EXE_voxgi"))
-        .args(["profile", "-p", "cones", "--size", "32x32", "--set", "resolution=16", "--frames", "3"])
-        .arg(scene)
+        .args(["profile", "-p", "mip_chain", "--size", "8x8", "--frames", "3"])
+        .arg("--library")
+        .args([root.join("tests/library-engine"), root.join("scenes/cornell-box.glb")])
         .envs([("TRACY_NO_EXIT", "1"), ("TRACY_ONLY_LOCALHOST", "1"), ("TRACY_PORT", &port.to_string())])
         .stdout(Stdio::null())
         .spawn();
@@ -112,8 +113,8 @@ fn the_profiler_gets_zones_plots_and_frames() {
 
     let sent = receive(&mut stream);
     let count = |text: &str| sent.windows(text.len()).filter(|window| *window == text.as_bytes()).count();
-    // Each zone's source location has the stage's path twice, as function and as name: in 1 + 2 + 3 frames.
-    for stage in ["voxelize/triangles", "trace/cones", "display/tone", "fill/sums"] {
+    // Each zone's source location has the stage's path as function and as name: in 1 + 2 + 3 frames.
+    for stage in ["position", "mean[0]", "mean[2]"] {
         assert_eq!(count(&format!("{stage}\0pipeline\0{stage}")), 6, "{stage}");
     }
     assert_eq!(count("\u{6}stages"), 1, "the name of the GPU's context, with its length");

@@ -112,11 +112,11 @@ fn json_has_all_samples_and_files_are_written() {
 fn what_does_not_depend_on_the_camera_is_kept() {
     let found = json(&profile(&["--json", "--change", "nothing", "--orbit", "90"]));
     assert_eq!(found["changes"], serde_json::json!(["camera"]));
-    let status = |path: &str| {
-        let stages = found["stages"].as_array().expect("stages");
-        stages.iter().find(|s| s["path"] == path).map(|s| s["status"].clone()).expect("a stage")
-    };
-    assert_eq!((status("voxelize/triangles"), status("trace/cones")), ("kept".into(), "run".into()));
+    let stages = found["stages"].as_array().expect("stages");
+    let of = |status: &str| stages.iter().filter(|stage| stage["status"] == status).collect::<Vec<_>>();
+    assert!(of("kept").iter().all(|stage| stage["gpu_ms"].is_null() && stage["first_use_ms"].is_f64()));
+    assert!(of("run").iter().all(|stage| stage["gpu_ms"].is_f64()));
+    assert!(of("kept").len() > 5 && of("run").len() > 1, "{stages:?}");
     assert_eq!(found["fills"]["written_bytes"], 0, "kept stages need no fills");
 }
 
@@ -134,15 +134,9 @@ fn the_table_fits() {
         let widest = text.lines().max_by_key(|line| line.chars().count()).expect("lines");
         assert!(widest.chars().count() <= width, "{columns:?}: {widest}");
         assert!(!text.contains('\u{1b}'), "no colours in a pipe");
-        for part in [
-            "voxelize/triangles",
-            "mipmap_emitted",
-            "of copy",
-            "first use",
-            "p90",
-            "copy speed",
-            "dropped, since",
-        ] {
+        for part in
+            ["fills", "encode and submit", "of copy", "first use", "p90", "copy speed", "dropped, since"]
+        {
             assert!(text.contains(part), "{part}: {text}");
         }
         let tables = text.lines().filter(|line| line.starts_with("stage ")).count();
