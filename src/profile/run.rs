@@ -1,4 +1,5 @@
-//! Runs the frames of a profile: one for the first use, some to warm up, then those that count.
+//! Runs the frames of a profile: one for the first use, some to warm up, then those that count. They follow one another
+//! without a reset, which would make all that is kept run once more in the first one that counts.
 
 use crate::device::Gpu;
 use crate::frame::{Changes, Frame, Times};
@@ -44,10 +45,6 @@ pub fn run(subject: &mut impl Subject, course: Course) -> Result<Ran> {
         if index == 0 {
             ran.samples.first = Some(times);
         }
-    }
-    // What is kept stays kept; only a pipeline that goes on from frame to frame starts again.
-    if subject.frame().0.goes_on() {
-        subject.frame().0.reset();
     }
     for index in 0..course.frames {
         let changes = subject.before(Some(index))?;
