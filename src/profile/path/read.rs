@@ -82,14 +82,15 @@ fn key(ron: &RonFile, raw: &RawValue) -> Result<(Unit, Key), Problem> {
     };
     let (eye, look_at) = (DVec3::from(entry.eye), DVec3::from(entry.look_at));
     if !(at.is_finite() && eye.as_vec3().is_finite() && look_at.as_vec3().is_finite()) {
-        return Err(wrong("`time`, `eye` and `look_at` must be finite"));
+        return Err(wrong("`time`, `eye` and `look_at` must be finite").help("coordinates are in metres"));
     }
     if eye == look_at {
-        return Err(wrong("`eye` and `look_at` are the same point"));
+        return Err(wrong("`eye` and `look_at` are the same point").help("move one of them"));
     }
     let fov = entry.fov_degrees;
     if fov.is_some_and(|fov| !(fov > 0.0 && fov < 180.0)) {
-        return Err(wrong("`fov_degrees` must be between 0 and 180"));
+        return Err(wrong("`fov_degrees` must be between 0 and 180")
+            .help("it is the full vertical angle; without it, that of the scene's camera is taken"));
     }
     Ok((unit, Key { at, eye, look_at, fov: fov.map(f64::to_radians), place }))
 }
