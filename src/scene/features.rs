@@ -107,7 +107,9 @@ const METALNESS: usize = 2;
 fn range(scene: &Scene, reference: UVec4, channel: usize) -> [f32; 2] {
     let referred = |image: &&Image| reference.y > 0 && image.offset == reference.x;
     let image = scene.images.iter().find(referred);
-    image.map_or([1.0; 2], |image| [image.least, image.greatest].map(|texel| f32::from(texel[channel]) / 255.0))
+    image.map_or([1.0; 2], |image| {
+        [image.least, image.greatest].map(|texel| f32::from(texel[channel]) / 255.0)
+    })
 }
 
 fn normal_mapped(used: &[Material]) -> bool {

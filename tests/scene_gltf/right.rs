@@ -193,7 +193,10 @@ fn textures_that_are_used() {
     assert_eq!(scene.materials[0].emission_image, UVec4::new(0, 2, 1, srgb | levels | sampler));
     assert_eq!(
         lacks(&scene),
-        ["1 texture coordinate that is not finite is set to 0", "1 occlusion texture is not applied: occlusion is simulated"]
+        [
+            "1 texture coordinate that is not finite is set to 0",
+            "1 occlusion texture is not applied: occlusion is simulated"
+        ]
     );
     assert_eq!((scene.vertices[1].u, scene.vertices[2].v), (1.0, 0.0));
 }

@@ -61,7 +61,8 @@ impl Meshes {
         let attributes = Attributes::of(primitive, needs, notes)?;
         let mapped =
             needs.normal_map.filter(|m| attributes.tangents.is_none() && attributes.uvs[m.place].is_some());
-        let key = (attributes, primitive.indices.map(|i| i.value()), mode.as_gl_enum(), mapped.map(space_key));
+        let key =
+            (attributes, primitive.indices.map(|i| i.value()), mode.as_gl_enum(), mapped.map(space_key));
         if let Some(part) = self.parts.get(&key) {
             return Some(Rc::clone(part));
         }

@@ -25,7 +25,10 @@ impl Attributes {
     /// Those of a primitive that its material has a use for; `None` without positions.
     pub fn of(primitive: &Primitive, needs: &Needs, notes: &mut Notes) -> Option<Self> {
         let attribute = |semantic| {
-            primitive.attributes.get(&Checked::Valid(semantic)).map(|accessor: &Index<Accessor>| accessor.value())
+            primitive
+                .attributes
+                .get(&Checked::Valid(semantic))
+                .map(|accessor: &Index<Accessor>| accessor.value())
         };
         let Some(positions) = attribute(Semantic::Positions) else {
             notes.lack("primitive without positions", "left out");
