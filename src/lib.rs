@@ -14,6 +14,7 @@ pub mod kernel;
 pub mod library;
 pub mod picture;
 pub mod plan;
+pub mod play;
 pub mod problem;
 pub mod record;
 pub mod scene;

@@ -1,13 +1,14 @@
 //! `voxgi render`: pictures, and the time of each stage.
 
 use super::outputs::{Target, Writer};
-use super::{PipelineArgs, print, print_json, tell};
+use super::{PipelineArgs, print, print_json, savings, tell};
 use crate::device::{Gpu, LimitSet};
 use crate::frame::{Changes, Clock, Frame, Poison, calibrate};
 use crate::picture::{self, Curve};
+use crate::play::Play;
 use crate::problem::{Problem, Result};
 use crate::record::{self, Record, Samples};
-use crate::scene::{self, Scene};
+use crate::scene::Scene;
 use crate::session::{bytes, prepare};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -58,6 +59,9 @@ pub struct RenderArgs {
     /// Look for the first stage that writes NaN or infinities.
     #[arg(long)]
     scan: bool,
+    /// Measure what each stage that was kept or dropped takes when it runs.
+    #[arg(long)]
+    savings: bool,
     /// Print the record as one JSON object.
     #[arg(long)]
     pub json: bool,
@@ -71,8 +75,8 @@ enum PoisonArg {
 
 pub fn run(args: &RenderArgs) -> Result<()> {
     let library = args.pipeline_args.library()?;
-    let scene = scene::load(&args.scene)?;
-    let mut request = args.pipeline_args.request(&args.pipeline);
+    let scene = args.pipeline_args.scene(&args.scene)?;
+    let mut request = args.pipeline_args.request_for(&args.pipeline, &scene);
     request.reuse &= args.dumps.is_empty();
     let prepared = prepare(&request, &library, Some(&scene))?;
     let warnings = prepared.warnings.clone();
@@ -94,7 +98,17 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         false => Changes::All,
     };
     let mut frame = prepared.realise(&gpu, &scene, clock.clone(), poison)?;
-    let samples = sample(&mut frame, &gpu, &changes, args.frames)?;
+    let samples = match (args.pipeline_args.play, scene.cameras.get(args.pipeline_args.camera)) {
+        (Some(rate), Some(camera)) => {
+            let mut play = Play::new(scene.clone(), camera.clone(), request.size, &frame);
+            let start = args.pipeline_args.time;
+            sample(&mut frame, &gpu, args.frames, |frame, index| {
+                let bits = play.go_to(frame, &gpu, start + f64::from(index) / rate)?;
+                Ok(if request.keep { Changes::Only(bits) } else { Changes::All })
+            })?
+        }
+        _ => sample(&mut frame, &gpu, args.frames, |_, _| Ok(changes.clone()))?,
+    };
     let scan = if args.scan { Some(frame.scan(&gpu)?) } else { None };
     if let Some(folder) = &args.out {
         std::fs::create_dir_all(folder).map_err(|e| {
@@ -107,6 +121,9 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     record.warnings = warnings.iter().map(Problem::to_json).collect();
     record.outputs = outputs;
     record.scan = scan;
+    if args.savings {
+        savings::measure(&mut record.stages, &request, &library, &scene, (&gpu, &clock))?;
+    }
     if let Some(folder) = &args.out {
         let path = folder.join("record.json");
         picture::write_bytes(&path, format!("{:#}\n", to_json(&record)?).as_bytes())?;
@@ -130,13 +147,20 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     }
 }
 
-/// The first frame apart, then, from the same state, the frames that count; or the first frame alone.
-fn sample(frame: &mut Frame, gpu: &Gpu, changes: &Changes, frames: Option<u32>) -> Result<Samples> {
+/// The first frame apart, then, from the same state, the frames that count; or the first frame alone. `prepare` is told
+/// the number of each frame before it runs, and says what has changed since the one before.
+fn sample(
+    frame: &mut Frame,
+    gpu: &Gpu,
+    frames: Option<u32>,
+    mut prepare: impl FnMut(&mut Frame, u32) -> Result<Changes>,
+) -> Result<Samples> {
     let bar = ProgressBar::new(u64::from(frames.unwrap_or(0)) + 1);
     if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} frames, {eta} left") {
         bar.set_style(style);
     }
-    let first = frame.run(gpu, changes)?.clone();
+    let changes = prepare(frame, 0)?;
+    let first = frame.run(gpu, &changes)?.clone();
     bar.inc(1);
     let mut samples = Samples { first: Some(first.clone()), frames: Vec::new() };
     match frames {
@@ -146,8 +170,9 @@ fn sample(frame: &mut Frame, gpu: &Gpu, changes: &Changes, frames: Option<u32>) 
             if frame.goes_on() {
                 frame.reset();
             }
-            for _ in 0..frames {
-                samples.frames.push(frame.run(gpu, changes)?.clone());
+            for index in 1..=frames {
+                let changes = prepare(frame, index)?;
+                samples.frames.push(frame.run(gpu, &changes)?.clone());
                 bar.inc(1);
             }
         }
@@ -188,7 +213,7 @@ fn make_record(
         stages: record::stages(frame, samples),
         counters: frame.counters(gpu)?.into_iter().collect(),
         memory: record::memory(frame),
-        lacks: scene.lacks.iter().map(ToString::to_string).collect(),
+        lacks: record::lacks(scene, &frame.graph),
         warnings: Vec::new(),
         outputs: BTreeMap::new(),
         scan: None,
@@ -237,7 +262,10 @@ fn table(record: &Record) -> String {
                 ms(stage.gpu_ms),
                 ms(stage.first_use_ms)
             )),
-            Some(reason) => line(format_args!("{:<widest$}  {:>9}  {reason}", stage.path, stage.status)),
+            Some(reason) => {
+                let saved = stage.saved_ms.map_or_else(String::new, |saved| format!("; saves {saved:.3}"));
+                line(format_args!("{:<widest$}  {:>9}  {reason}{saved}", stage.path, stage.status));
+            }
         }
     }
     line(format_args!("{:<widest$}  {:>9}", "fills", ms(record.fills_ms)));

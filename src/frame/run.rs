@@ -338,7 +338,7 @@ fn encode_raster(
     pass.set_pipeline(&raster.pipeline);
     pass.set_bind_group(0, stage.group(parity), &[]);
     match &raster.draw {
-        MadeDraw::Vertices(count) => pass.draw(0..*count, 0..1),
+        MadeDraw::Vertices(range) => pass.draw(range.clone(), 0..1),
         MadeDraw::Indirect(buffer, offset) => pass.draw_indirect(buffer, *offset),
     }
 }
