@@ -189,8 +189,8 @@ fn turned(scene: &Scene) -> usize {
     scene.triangles.iter().zip(triangles(scene)).filter(|pair| against((pair.0, pair.1))).count()
 }
 
-/// Mirrored nodes are no inside-out ones: faces and normals stay on one side, and the squares of the column "front" face
-/// the viewer at scale 1 as at scale -1, those of "back" do not. (Nothing is culled here, so that the picture shows the
+/// Mirrored nodes are no inside-out ones: faces and normals stay on one side, and the squares of the column "front"
+/// face the viewer at scale 1 as at scale -1, those of "back" do not. (Nothing is culled here, so that the picture shows the
 /// crosses which are on the backs.)
 #[test]
 fn negative_scale_test() {

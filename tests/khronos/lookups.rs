@@ -36,7 +36,10 @@ const SCALE: [f64; 2] = [1.5, 0.75];
 const ROTATION: f64 = 0.4;
 
 fn materials() -> Value {
-    let transform = |set: Value| json!({"KHR_texture_transform": {"offset": OFFSET, "scale": SCALE, "rotation": ROTATION, "texCoord": set}});
+    let transform = |set: Value| {
+        let fields = json!({"offset": OFFSET, "scale": SCALE, "rotation": ROTATION, "texCoord": set});
+        json!({"KHR_texture_transform": fields})
+    };
     json!([
         {
             "pbrMetallicRoughness": {
@@ -61,7 +64,8 @@ fn document() -> Value {
     let uvs = &positions[..24];
     let list =
         |view: u32, kind: &str| json!({"bufferView": view, "componentType": 5126, "count": 3, "type": kind});
-    let primitive = |material: u32| json!({"material": material, "attributes": {"POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 1}});
+    let attributes = json!({"POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 1});
+    let primitive = |material: u32| json!({"material": material, "attributes": attributes});
     json!({
         "asset": {"version": "2.0"},
         "nodes": [{"mesh": 0}],
@@ -74,7 +78,9 @@ fn document() -> Value {
         ],
         "images": [{"uri": picture(5, 7)}, {"uri": picture(16, 4)}, {"uri": picture(33, 12)}],
         "samplers": [{"wrapS": 10497, "wrapT": 33648}, {"wrapS": 33071, "wrapT": 10497}, {"magFilter": 9728}],
-        "textures": [{"source": 0, "sampler": 0}, {"source": 1, "sampler": 1}, {"source": 2}, {"source": 0, "sampler": 2}],
+        "textures": [
+            {"source": 0, "sampler": 0}, {"source": 1, "sampler": 1}, {"source": 2}, {"source": 0, "sampler": 2},
+        ],
         "materials": materials(),
     })
 }

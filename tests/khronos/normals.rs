@@ -5,8 +5,8 @@ use super::shot::Shot;
 use glam::DVec2;
 use serde_json::json;
 
-/// Largest mean angle, in degrees, between the normals of a painted dome and those of the one beside it. A pair: where the
-/// dome is, where the paintings of it are.
+/// Largest mean angle, in degrees, between the normals of a painted dome and those of the one beside it. A pair: where
+/// the dome is, where the paintings of it are.
 fn difference(model: &Model, pairs: &[(f64, &[f64])]) -> f64 {
     let shot = Shot::new(model, "normal", [0.0, -0.1], 1.5);
     let mut worst = 0.0f64;

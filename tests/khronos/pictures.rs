@@ -15,8 +15,8 @@ fn is_dark(color: DVec3) -> bool {
     color.max_element() < 0.03
 }
 
-/// Above, squares of green, blue and cyan with check marks, instead of one red with a cross; below, arrows that point at
-/// a green marker, the node "… - Correct".
+/// Above, squares of green, blue and cyan with check marks, instead of one red with a cross; below, arrows that point
+/// at a green marker, the node "… - Correct".
 fn transforms(model: &Model) -> Verdict {
     let shot = Shot::new(model, "albedo", [0.0, 0.0], 1.8);
     let bright = 0.527;

@@ -1,7 +1,7 @@
 //! Textures: an image with the sampler it is looked up by.
 //!
-//! An image is decoded once, and only if a material in use asks for it; one that is asked for both as colour and as data
-//! is stored twice. Where it will lie is settled by its header, so that nothing is decoded that can't be held, and each
+//! An image is decoded once, and only if a material in use asks for it; one that is asked for both as colour and as
+//! data is stored twice. Where it will lie is settled by its header, so that nothing is decoded that can't be held, and each
 //! image is decoded to its place: in parallel, and with the same result however many threads there are.
 
 use super::file::File;
