@@ -18,7 +18,7 @@ use crate::scene::Camera;
 use camera::CameraArgs;
 use clap::Args;
 use indicatif::ProgressBar;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Frames that count, unless it is said.
 const FRAMES: u32 = 20;
@@ -47,6 +47,11 @@ pub struct ProfileArgs {
 }
 
 pub fn run(args: &ProfileArgs) -> Result<()> {
+    if let Some(file) = args.trace.as_deref().filter(|file| !folder_is_there(file)) {
+        let message = format!("`{}` would be in a folder that does not exist", file.display());
+        let help = "make the folder first; only that of `--out` is made";
+        return Err(Problem::input("no-folder", message).help(help).into());
+    }
     let path = args.camera.read()?;
     // The camera that moves is one of the things that change, if any are said at all.
     let moving = path.is_some();
@@ -90,6 +95,10 @@ pub fn run(args: &ProfileArgs) -> Result<()> {
         print(&table::text(&profile, table::width()));
     }
     Ok(())
+}
+
+fn folder_is_there(file: &Path) -> bool {
+    file.parent().is_some_and(|folder| folder.as_os_str().is_empty() || folder.is_dir())
 }
 
 /// Frames behind a progress bar, with the scene and the camera moving as was asked.

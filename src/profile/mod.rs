@@ -42,6 +42,7 @@ pub struct Profile {
     pub frame_samples_ms: Vec<Option<f64>>,
     pub encode_samples_ms: Vec<f64>,
     pub fills_samples_ms: Vec<Option<f64>>,
+    /// Of those that the last frame did.
     pub fills: Traffic,
     pub copy: CopySpeeds,
 }
@@ -62,9 +63,12 @@ impl Profile {
             let traffic = bytes.get(*step).copied().flatten();
             stage.profile = Some(StageProfile::new(stage.gpu_ms, whole, traffic, copy.best()));
         }
-        let is_fill = |step: &Step| matches!(step, Step::Start { .. });
-        let fills = frame.schedule.steps.iter().zip(&bytes).filter(|(step, _)| is_fill(step));
-        let fills = fills.filter_map(|(_, bytes)| *bytes).fold(Traffic::default(), Traffic::and);
+        let done = frame.schedule.steps.iter().zip(frame.done()).zip(&bytes);
+        let fills = done.filter_map(|((step, done), bytes)| match step {
+            Step::Start { .. } if *done => *bytes,
+            _ => None,
+        });
+        let fills = fills.fold(Traffic::default(), Traffic::and);
         Self {
             record,
             warm_up: 0,

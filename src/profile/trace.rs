@@ -2,9 +2,9 @@
 //!
 //! One process, named after the adapter. Its tracks:
 //! * `GPU`: a slice for each frame; in it the parts of the pipeline, as far as their stages follow one another; in
-//!   those the stages. Where work overlaps, what does not fit goes to `GPU 2` and so on, so that slices always nest.
+//!   those the stages. Where work overlaps, what does not fit goes to `GPU, overlap 1` and so on, so that slices always nest.
 //! * `CPU`: encoding, submission and waiting, in a slice for each frame.
-//! * a counter track for each counter of a stage.
+//! * a counter track for each counter of a stage: from the begin of a frame on, what that frame counted.
 //!
 //! Times are µs since encoding of the first frame that counts. Those of the GPU are put on the CPU's clock as
 //! [`align`](super::align::align) says; how far off they can be stands in `otherData`.
@@ -102,13 +102,13 @@ pub fn build(
         lanes(&name, steps.collect(), &mut gpu);
         for (counter, count) in counters.get(index).into_iter().flatten() {
             let args = Map::from_iter([("count".to_owned(), json!(count))]);
-            let ts = Some(micros(cpu(cpu_times.done)));
+            let ts = Some(micros(cpu(cpu_times.begin)));
             events.push(Event { name: counter.clone(), ph: "C", ts, pid: PROCESS, tid: 0, args });
         }
     }
     for (index, lane) in gpu.iter().enumerate() {
         let tid = GPU + index as u32;
-        let name = if index == 0 { "GPU".to_owned() } else { format!("GPU {}", index + 1) };
+        let name = if index == 0 { "GPU".to_owned() } else { format!("GPU, overlap {index}") };
         events.push(meta("thread_name", tid, &name));
         events.extend(begin_and_end(tid, &lane.slices));
     }

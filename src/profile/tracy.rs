@@ -1,4 +1,4 @@
-//! A run for the Tracy profiler: a GPU context with zones for parts and stages, a mark for each frame, counters as plots.
+//! A run for the Tracy profiler: a GPU context with a zone for each stage and fill, a mark for each frame, counters as plots.
 //! The CPU's zones are where the frame is encoded (`zone!`).
 //!
 //! Tracy learns a stage's times when its frame has ended, so that zones appear then; where they lie is told by the

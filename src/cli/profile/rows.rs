@@ -21,7 +21,7 @@ pub struct Row {
     pub of_copy: Option<f64>,
 }
 
-/// The stages that ran, or ran once and are kept since. A part with several of them has a line for all together.
+/// The stages that ran in frames that count. A part with several of them has a line for all together.
 pub fn rows(profile: &Profile) -> Vec<Row> {
     let ran: Vec<&StageRecord> =
         profile.record.stages.iter().filter(|stage| stage.gpu_ms.is_some()).collect();

@@ -1,6 +1,7 @@
 //! A profile as text for people.
 //!
-//! Where there is room, a stage is one line; on narrow terminals times and bytes are two tables.
+//! Where there is room, a stage is one line; on narrow terminals times and bytes are two tables. No colours, so that a pipe
+//! gets what a terminal shows.
 
 use super::rows::{self, Row};
 use crate::cli::run::heading;
@@ -8,26 +9,23 @@ use crate::profile::Profile;
 use crate::profile::copy::CopySpeed;
 use crate::record::StageRecord;
 use crate::session::bytes;
-use comfy_table::{Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table, Width};
+use comfy_table::{Cell, CellAlignment, ColumnConstraint, ContentArrangement, Table};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// Columns of text on standard output: of the terminal, or enough for one line a stage if it is none.
+/// Columns of text on standard output: of the terminal; otherwise what `COLUMNS` says, or 120.
 pub fn width() -> usize {
-    terminal_size::terminal_size_of(std::io::stdout()).map_or(120, |(width, _)| usize::from(width.0))
+    let said = || std::env::var("COLUMNS").ok()?.parse().ok();
+    let terminal = terminal_size::terminal_size_of(std::io::stdout());
+    terminal.map(|(width, _)| usize::from(width.0)).or_else(said).unwrap_or(120)
 }
-
-/// The narrowest width at which times and bytes are one table, beside the names.
-const BOTH: usize = 84;
 
 type Column = (&'static str, fn(&Row) -> String);
 
-const TIMES: [Column; 4] = [
+const TIMES: [Column; 5] = [
     ("median", |row| ms(row.median)),
-    ("p10 – p90", |row| match (row.spread.p10, row.spread.p90) {
-        (Some(low), Some(high)) => format!("{} – {}", ms(Some(low)), ms(Some(high))),
-        _ => "–".to_owned(),
-    }),
+    ("p10", |row| ms(row.spread.p10)),
+    ("p90", |row| ms(row.spread.p90)),
     ("share", |row| percent(row.share, 1)),
     ("first use", |row| ms(row.first_use)),
 ];
@@ -41,7 +39,6 @@ const BYTES: [Column; 4] = [
 pub fn text(profile: &Profile, width: usize) -> String {
     let stages = rows::rows(profile);
     let totals = [rows::fills(profile), rows::frame(profile)];
-    let names = stages.iter().chain(&totals).map(|row| row.name.chars().count()).max().unwrap_or(0);
     let mut text = String::new();
     let mut say = |part: &str| {
         text.push_str(part);
@@ -55,13 +52,15 @@ pub fn text(profile: &Profile, width: usize) -> String {
         width,
     ));
     say("");
-    let lists: Vec<Vec<Column>> = match names + BOTH <= width {
-        true => vec![TIMES.into_iter().chain(BYTES).collect()],
-        false => vec![TIMES.to_vec(), BYTES.to_vec()],
-    };
-    for columns in &lists {
-        say(&table(&stages, &totals, columns, width));
+    let wide = table(&stages, &totals, &[&TIMES[..], &BYTES[..]].concat(), None);
+    if wide.lines().all(|line| line.chars().count() <= width) {
+        say(&wide);
         say("");
+    } else {
+        for columns in [&TIMES[..], &BYTES[..]] {
+            say(&table(&stages, &totals, columns, Some(width)));
+            say("");
+        }
     }
     say(&format!("encode and submit (CPU): {} ms", ms(profile.record.encode_ms)));
     say(&format!(
@@ -90,11 +89,8 @@ pub fn text(profile: &Profile, width: usize) -> String {
 /// Which frames the times are of.
 fn course(profile: &Profile) -> String {
     let frames = profile.record.frames;
-    let mut text = format!(
-        "{frames} frame{} after 1 + {} to warm up",
-        if frames == 1 { "" } else { "s" },
-        profile.warm_up
-    );
+    let plural = if frames == 1 { "" } else { "s" };
+    let mut text = format!("{frames} frame{plural}, after 1 of first use and {} to warm up", profile.warm_up);
     if let Some(moves) = &profile.camera_moves {
         let _infallible = write!(text, "; the camera moves {moves}");
     }
@@ -108,33 +104,31 @@ fn course(profile: &Profile) -> String {
     text
 }
 
-fn table(stages: &[Row], totals: &[Row], columns: &[Column], width: usize) -> String {
+/// The rows under their heads, and the totals below a line. Where a width is given, names are broken to fit.
+fn table(stages: &[Row], totals: &[Row], columns: &[Column], width: Option<usize>) -> String {
     let mut table = Table::new();
-    table.load_style(comfy_table::presets::NOTHING).set_content_arrangement(ContentArrangement::Dynamic);
-    table.set_width(u16::try_from(width).unwrap_or(u16::MAX));
+    table.load_style(comfy_table::presets::NOTHING);
+    if let Some(width) = width {
+        table.set_content_arrangement(ContentArrangement::Dynamic);
+        table.set_width(u16::try_from(width).unwrap_or(u16::MAX));
+    }
     let right = |text: String| Cell::new(text).set_alignment(CellAlignment::Right);
     table
         .set_header(std::iter::once(Cell::new("stage")).chain(columns.iter().map(|c| right(c.0.to_owned()))));
-    let line = |row: &Row| {
-        let cells: Vec<Cell> = columns.iter().map(|column| right(column.1(row))).collect();
-        std::iter::once(Cell::new(&row.name)).chain(cells).collect::<Vec<_>>()
-    };
-    stages.iter().for_each(|row| {
-        table.add_row(line(row));
-    });
-    table.add_row(vec![Cell::new("")]);
-    totals.iter().for_each(|row| {
-        table.add_row(line(row));
-    });
+    for row in stages.iter().chain(totals) {
+        let cells = columns.iter().map(|column| right(column.1(row)));
+        table.add_row(std::iter::once(Cell::new(&row.name)).chain(cells).collect::<Vec<_>>());
+    }
     for (index, column) in table.column_iter_mut().enumerate() {
         column.set_padding((if index == 0 { 0 } else { 1 }, 1));
         if index > 0 {
             column.set_constraint(ColumnConstraint::ContentWidth);
-        } else {
-            column.set_constraint(ColumnConstraint::LowerBoundary(Width::Fixed(12)));
         }
     }
-    let lines: Vec<String> = table.lines().map(|line| line.trim_end().to_owned()).collect();
+    let mut lines: Vec<String> = table.lines().map(|line| line.trim_end().to_owned()).collect();
+    let rule = "─".repeat(lines.iter().map(|line| line.chars().count()).max().unwrap_or(0));
+    lines.insert(lines.len().saturating_sub(totals.len()), rule.clone());
+    lines.insert(1, rule);
     lines.join("\n")
 }
 
@@ -152,15 +146,8 @@ fn copy(what: &str, speed: &CopySpeed) -> String {
     format!("{what} {rate} ({})", bytes(speed.bytes))
 }
 
-/// Four digits, or three places.
 fn ms(time: Option<f64>) -> String {
-    match time {
-        None => "–".to_owned(),
-        Some(time) if time >= 1000.0 => format!("{time:.0}"),
-        Some(time) if time >= 100.0 => format!("{time:.1}"),
-        Some(time) if time >= 10.0 => format!("{time:.2}"),
-        Some(time) => format!("{time:.3}"),
-    }
+    time.map_or_else(|| "–".to_owned(), |time| format!("{time:.3}"))
 }
 
 fn percent(ratio: Option<f64>, places: usize) -> String {
