@@ -175,8 +175,8 @@ fn normal_map_at(material: u32, uv: vec4f, footprint: vec2f) -> vec3f {
     return vec3f(map.xy * materials[material].normal_scale, map.z);
 }
 
-/// A unit vector: `map`, as `normal_map_at` gives it, turned to the world. As MikkTSpace has it, `normal` and `tangent` are
-/// those of the corners, interpolated and not normalised; where the tangent is zero there is no map.
+/// A unit vector: `map`, as `normal_map_at` gives it, turned to the world. As MikkTSpace has it, `normal` and `tangent`
+/// are those of the corners, interpolated and not normalised; where the tangent is zero there is no map.
 fn mapped_normal(map: vec3f, normal: vec3f, tangent: vec4f) -> vec3f {
     let plain = unit_or(normal, vec3f(0.0));
     if dot(tangent.xyz, tangent.xyz) < 1e-12 {

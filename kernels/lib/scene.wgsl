@@ -1,7 +1,7 @@
 // The scene's triangles, in world space (metres).
 //
-// Cost of a corner: 1 vertex (32 B), and as much again where the scene has vertex colours or second texture coordinates; of
-// a triangle's record 16 B, of its instance 128 B.
+// Cost of a corner: 1 vertex (32 B), and as much again where the scene has vertex colours or second texture
+// coordinates; of a triangle's record 16 B, of its instance 128 B.
 
 import lib/math;
 

@@ -6,10 +6,12 @@
 
 import lib/voxel_sums;
 
+@if(scene.emissive)
 struct SceneFacts {
     max_emission: f32,
 }
 
+@if(scene.emissive)
 var<uniform> scene: SceneFacts;
 
 var voxels: texture_storage_3d<rgba16float, write>;
@@ -24,12 +26,15 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let count = fragments_at(at);
     var value = vec4f(0.0);
     if count > 0u {
-        let mean = vec3f(
-            mean_unsigned(sum_at(at + SUM_EMISSION), count),
-            mean_unsigned(sum_at(at + SUM_EMISSION + 1u), count),
-            mean_unsigned(sum_at(at + SUM_EMISSION + 2u), count),
-        );
-        value = vec4f(mean * scene.max_emission, 1.0);
+        value.a = 1.0;
+        @if(scene.emissive) {
+            let mean = vec3f(
+                mean_unsigned(sum_at(at + SUM_EMISSION), count),
+                mean_unsigned(sum_at(at + SUM_EMISSION + 1u), count),
+                mean_unsigned(sum_at(at + SUM_EMISSION + 2u), count),
+            );
+            value = vec4f(mean * scene.max_emission, 1.0);
+        }
     }
     textureStore(voxels, id, value);
 }

@@ -112,9 +112,10 @@ fn decoder(srgb: bool) -> [f32; 256] {
 }
 
 fn encode(texel: Vec4, srgb: bool) -> u32 {
-    let color = |c: f32| if srgb { srgb::encode8(c) } else { (c * 255.0).round() as u8 };
-    let alpha = (texel.w * 255.0).round() as u8;
-    u32::from_le_bytes([color(texel.x), color(texel.y), color(texel.z), alpha])
+    // Conversion to integers cuts off.
+    let plain = |c: f32| (c * 255.0 + 0.5) as u8;
+    let color = |c: f32| if srgb { srgb::encode8(c) } else { plain(c) };
+    u32::from_le_bytes([color(texel.x), color(texel.y), color(texel.z), plain(texel.w)])
 }
 
 /// The area-weighted mean of `from` at the size `to`; `texel` gives the texels of `from`.

@@ -1,8 +1,8 @@
 //! Primitives: vertices, and triangles over them.
 //!
 //! Lists are read once for each distinct set of accessors, however many primitives or nodes use them. Two kinds of
-//! primitives have vertices of their own: those without normals, where each triangle gets three with its face normal, and
-//! those whose tangents are made.
+//! primitives have vertices of their own: those without normals, where each triangle gets three with its face normal,
+//! and those whose tangents are made.
 
 use super::corners::corners;
 use super::file::File;

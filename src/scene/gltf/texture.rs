@@ -1,7 +1,7 @@
 //! Textures: an image with the sampler it is looked up by.
 //!
-//! An image is decoded once, and only if a material in use asks for it; one that is asked for both as colour and as data
-//! is stored twice. Where it will lie is settled by its header, so that nothing is decoded that can't be held, and each
+//! An image is decoded once, and only if a material in use asks for it; one that is asked for both as colour and as
+//! data is stored twice. Where it will lie is settled by its header, so that nothing is decoded that can't be held, and each
 //! image is decoded to its place: in parallel, and with the same result however many threads there are.
 
 use super::file::File;
@@ -172,15 +172,19 @@ fn load(file: &File, header: &Header, targets: &mut [Target]) -> Result<(), Faul
         other.texels[..finest].copy_from_slice(&first.texels[..finest]);
     }
     for Target { image, texels } in std::iter::once(first).chain(others) {
-        for texel in texels[..finest].iter().map(|texel| texel.to_le_bytes()) {
-            for (channel, value) in texel.into_iter().enumerate() {
-                image.least[channel] = image.least[channel].min(value);
-                image.greatest[channel] = image.greatest[channel].max(value);
-            }
-        }
+        (image.least, image.greatest) = range(&texels[..finest]);
         fill_levels(texels, width, height, image.srgb);
     }
     Ok(())
+}
+
+/// Least and greatest value of each channel.
+fn range(texels: &[u32]) -> ([u8; 4], [u8; 4]) {
+    texels.iter().fold(([255; 4], [0; 4]), |(least, greatest), texel| {
+        let texel = texel.to_le_bytes();
+        let channels = [0, 1, 2, 3];
+        (channels.map(|c: usize| texel[c].min(least[c])), channels.map(|c| texel[c].max(greatest[c])))
+    })
 }
 
 fn sampling(sampler: &json::texture::Sampler) -> Result<Sampling, Fault> {

@@ -126,8 +126,8 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// The list that `read` makes of the accessor, as long as those before: `Some(None)` if there is no accessor, `None`
-    /// if it is faulty.
+    /// The list that `read` makes of the accessor, as long as those before: `Some(None)` if there is no accessor,
+    /// `None` if it is faulty.
     fn list<T>(
         &mut self,
         name: &str,
