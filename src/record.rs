@@ -88,6 +88,21 @@ pub struct StageRecord {
     /// Why its result depends on thread order, if it does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order_dependent: Option<String>,
+    #[serde(flatten)]
+    pub profile: Option<StageProfile>,
+}
+
+/// What only a profile says of a stage that is in the schedule.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StageProfile {
+    /// Of the frame's median.
+    pub share: Option<f64>,
+    /// What the stage binds, once: see [`crate::profile::traffic`].
+    pub read_bytes: Option<u64>,
+    pub written_bytes: Option<u64>,
+    /// Both together in the median time, in 10⁹ bytes a second, and as a part of the device's copy speed.
+    pub gb_per_s: Option<f64>,
+    pub of_copy: Option<f64>,
 }
 
 /// Tenth and ninetieth percentile.
@@ -155,6 +170,7 @@ pub fn stages(frame: &Frame, samples: &Samples) -> Vec<StageRecord> {
             samples_ms: Vec::new(),
             saved_ms: None,
             order_dependent: stage.order_dependent.clone(),
+            profile: None,
         };
         match &frame.schedule.fates[index] {
             Fate::Dropped(reason) => record.reason = Some(reason.clone()),

@@ -105,7 +105,7 @@ pub fn prepare(request: &Request, library: &Library, scene: Option<&Scene>) -> R
         reuse: request.reuse,
         drop: request.drop,
         keep: request.keep,
-        varying: with_values(&request.varying, &graph),
+        varying: with_values(&graph.plan, &request.varying),
     };
     let work = graph::work::work(&graph);
     let scheduled = |options: &schedule::Options| {
@@ -130,13 +130,15 @@ pub fn prepare(request: &Request, library: &Library, scene: Option<&Scene>) -> R
     })
 }
 
-/// With the bits of the named values that can change when these do.
-fn with_values(varying: &BTreeSet<u32>, graph: &Graph) -> BTreeSet<u32> {
-    let values = graph.plan.values.iter().enumerate();
-    let change =
-        |causes: &BTreeSet<_>| causes.iter().any(|cause| varying.contains(&graph::facts::bit(*cause)));
-    let changing = values.filter(|(_, value)| change(&value.causes)).map(|(i, _)| graph::facts::value_bit(i));
-    varying.iter().copied().chain(changing).collect()
+/// What may change, and with it the values that depend on it.
+fn with_values(plan: &plan::Plan, varying: &BTreeSet<u32>) -> BTreeSet<u32> {
+    let mut all = varying.clone();
+    for (index, value) in plan.values.iter().enumerate() {
+        if value.causes.iter().any(|cause| varying.contains(&graph::facts::bit(*cause))) {
+            all.insert(graph::facts::value_bit(index));
+        }
+    }
+    all
 }
 
 fn reruns(schedule: &Schedule) -> Vec<BTreeSet<u32>> {

@@ -19,6 +19,11 @@ fn seen_at(position: vec3f, level: f32, direction: vec3f) -> vec4f {
     return reflected_at(position, level, direction);
 }
 
+/// All that comes from outside is in the first scattering.
+fn seen_beyond(direction: vec3f, width: f32) -> vec3f {
+    return vec3f(0.0);
+}
+
 @compute @workgroup_size(4, 4, 4)
 fn main(
     @builtin(global_invocation_id) id: vec3u,

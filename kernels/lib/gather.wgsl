@@ -1,7 +1,8 @@
 // Irradiance that cones bring to one side of a surface.
 //
 // Source: R 6.4 (eq. 6.14 without ρ/π). What the cones see is up to the kernel that imports this: it defines
-// `seen_at(position, level, direction)`, premultiplied radiance and opacity as a storage's module returns them.
+// `seen_at(position, level, direction)`, premultiplied radiance and opacity as a storage's module returns them, and
+// `seen_beyond(direction, width)`, the radiance from outside the grid over a width in radians.
 // Reads: one sample for each step of each cone of the role `hemisphere`.
 
 import lib/math;
@@ -30,6 +31,7 @@ fn gather(position: vec3f, n: vec3f, resolution: f32) -> vec3f {
             let found = seen_at(cone_position(cone), cone.level, cone.direction);
             radiance += cone_absorb(&cone, found.a, cones) * found;
         }
+        radiance += vec4f(cone.transmittance * seen_beyond(cone.direction, CONE_DIAMETER), 0.0);
         if i == 0u {
             axis = radiance;
         } else {

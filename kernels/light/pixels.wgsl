@@ -2,12 +2,13 @@
 //
 // direct = emission that the camera sees + ρ/π · Σ E max(0, n·l) S over the lights (R eq. 7.1, corrected: E the
 // irradiance facing the light, ρ once) + what emitting surfaces add, as traced. A light behind the triangle's plane
-// adds nothing. Radiances, W/(sr·m²); black where there is no surface. `linear_depth`: metres along the camera's
+// adds nothing. Radiances, W/(sr·m²); where there is no surface, that of the environment. `linear_depth`: metres along the camera's
 // forward axis, 0 where there is no surface.
 // Reads per pixel: up to 7 texels, per light 64 + 112 B and 4 depths; writes 3 texels.
 
 import lib/camera;
 import lib/math;
+@if(scene.environment) import lib/environment;
 @if(lights.total > 0) import lib/lights;
 
 var depth: texture_depth_2d;
@@ -18,7 +19,7 @@ var normal: texture_2d<f32>;
 var face_normal: texture_2d<f32>;
 @if(scene.emissive)
 var emission: texture_2d<f32>;
-@if(scene.emissive)
+@if(scene.emissive || scene.environment)
 var emissive_light: texture_2d<f32>;
 var indirect: texture_2d<f32>;
 var direct: texture_storage_2d<rgba32float, write>;
@@ -59,7 +60,15 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             light += rho / PI * irradiance(pixel_position(pixel, size, seen), n, plane);
         }
         @if(scene.emissive) {
-            light += textureLoad(emission, pixel, 0).rgb + textureLoad(emissive_light, pixel, 0).rgb;
+            light += textureLoad(emission, pixel, 0).rgb;
+        }
+        @if(scene.emissive || scene.environment) {
+            light += textureLoad(emissive_light, pixel, 0).rgb;
+        }
+    } else {
+        @if(scene.environment) {
+            let width = 2.0 * length(camera.up) / f32(size.y);
+            light = environment_at(normalize(pixel_ray(pixel, size).direction), (1.0 - camera.parallel) * width);
         }
     }
     textureStore(direct, pixel, vec4f(light, 1.0));

@@ -5,8 +5,8 @@
 // is evaluated at the mean position of the surface, not at the voxel's centre: on the surface where that is flat, and
 // never further from it than half the voxel's diagonal (a mean of points in a cube is that close to one of them). By
 // this much the point is moved towards the light before it is looked up.
-// Emission is gathered by the cones of the role `hemisphere` over each side of the mean normal, from the mean position.
-// Reads per filled voxel: 40 B, per light 64 + 112 B and 4 depths, and 12 cones where the scene emits; writes 1 or 2
+// Emission, and light from outside, is gathered by the cones of the role `hemisphere` over each side of the mean normal, from the mean position.
+// Reads per filled voxel: 40 B, per light 64 + 112 B and 4 depths, and 12 cones where there is emission or an environment; writes 1 or 2
 // texels.
 
 import lib/filled;
@@ -14,8 +14,9 @@ import lib/voxel_sums;
 import lib/math;
 import lib/two_sided;
 @if(lights.total > 0) import lib/lights;
-@if(scene.emissive) import lib/gather;
-@if(scene.emissive) import role/storage;
+@if(scene.emissive || scene.environment) import lib/gather;
+@if(scene.emissive || scene.environment) import role/storage;
+@if(scene.environment) import lib/environment;
 
 var lit: texture_storage_3d<rgba16float, write>;
 /// The same again: what bounces are added to.
@@ -48,9 +49,18 @@ fn add_lights(sides: ptr<function, Sides>, surfel: Surfel, n: vec3f) {
     }
 }
 
-@if(scene.emissive)
+@if(scene.emissive || scene.environment)
 fn seen_at(position: vec3f, level: f32, direction: vec3f) -> vec4f {
     return emitted_at(position, level, direction);
+}
+
+@if(scene.emissive || scene.environment)
+fn seen_beyond(direction: vec3f, width: f32) -> vec3f {
+    @if(scene.environment) {
+        return environment_at(direction, width);
+    } @else {
+        return vec3f(0.0);
+    }
 }
 
 fn store(voxel: vec3u, value: vec4f) {
@@ -86,7 +96,7 @@ fn main(
     @if(lights.total > 0) {
         add_lights(&sides, surfel, n);
     }
-    @if(scene.emissive) {
+    @if(scene.emissive || scene.environment) {
         sides.front += gather(surfel.position, n, f32(size.x));
         sides.back += gather(surfel.position, -n, f32(size.x));
     }

@@ -8,8 +8,8 @@ import lib/grid;
 
 /// Light that surfaces scatter.
 var reflected: texture_3d<f32>;
-/// Light that surfaces emit.
-@if(scene.emissive)
+/// Light that surfaces emit; there for its opacities too, where light comes from outside.
+@if(scene.emissive || scene.environment)
 var emitted: texture_3d<f32>;
 var volume_sampler: sampler;
 
@@ -30,13 +30,13 @@ fn reflected_voxel(voxel: vec3i, level: i32, direction: vec3f) -> vec4f {
     return textureLoad(reflected, voxel, level);
 }
 
-@if(scene.emissive)
+@if(scene.emissive || scene.environment)
 fn emitted_at(position: vec3f, level: f32, direction: vec3f) -> vec4f {
     let at = volume_coordinates(position, textureDimensions(emitted).x);
     return at.w * textureSampleLevel(emitted, volume_sampler, at.xyz, level);
 }
 
-@if(scene.emissive)
+@if(scene.emissive || scene.environment)
 fn emitted_voxel(voxel: vec3i, level: i32, direction: vec3f) -> vec4f {
     return textureLoad(emitted, voxel, level);
 }

@@ -1,5 +1,5 @@
 // Light that voxels send to the surface in each pixel, gathered by cones: what they reflect (`indirect`), what they
-// emit (`emissive_light`), and how open the surroundings are (`ambient_occlusion`), all in one march.
+// emit or that comes from outside (`emissive_light`), and how open the surroundings are (`ambient_occlusion`), all in one march.
 //
 // Source: R 6.3, 6.4, eq. 6.8, 6.9, 6.14: radiance ρ/π Σ W L, with ρ once. Ambient occlusion here is the
 // cosine-weighted share of directions in which nothing lies within `ao_distance`, 1 = open: occlusion counts fully up
@@ -12,6 +12,7 @@ import role/hemisphere;
 import lib/math;
 import role/cones;
 import role/storage;
+@if(scene.environment) import lib/environment;
 
 struct Knobs {
     resolution: u32,
@@ -28,7 +29,7 @@ var albedo: texture_2d<f32>;
 var normal: texture_2d<f32>;
 var face_normal: texture_2d<f32>;
 var indirect: texture_storage_2d<rgba32float, write>;
-@if(scene.emissive)
+@if(scene.emissive || scene.environment)
 var emissive_light: texture_storage_2d<rgba32float, write>;
 var ambient_occlusion: texture_storage_2d<r32float, write>;
 
@@ -55,6 +56,9 @@ fn trace_cone(origin: Cone, ao_end: f32) -> Gathered {
         let begin = cone.next - cone.length;
         let near = clamp((ao_end - begin) / cone.length, 0.0, 1.0);
         openness -= near * (before - cone.transmittance);
+    }
+    @if(scene.environment) {
+        found.emitted += vec4f(cone.transmittance * environment_at(cone.direction, CONE_DIAMETER), 0.0);
     }
     found.reflected.a = openness;
     return found;
@@ -92,7 +96,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let rho = textureLoad(albedo, pixel, 0).rgb;
     textureStore(indirect, pixel, vec4f(rho * reflected.rgb, 1.0));
     textureStore(ambient_occlusion, pixel, vec4f(reflected.a, 0.0, 0.0, 1.0));
-    @if(scene.emissive) {
+    @if(scene.emissive || scene.environment) {
         let emitted = hemisphere_mean(axis.emitted, sides.emitted, exact);
         textureStore(emissive_light, pixel, vec4f(rho * emitted.rgb, 1.0));
     }

@@ -9,7 +9,9 @@ mod generate;
 mod kernels;
 mod outputs;
 mod picture_graph;
+mod profile;
 mod render;
+mod run;
 mod savings;
 
 use crate::library::Library;
@@ -36,6 +38,8 @@ struct Cli {
 enum Command {
     /// Render a scene by a pipeline: pictures, and the time of each stage.
     Render(Box<render::RenderArgs>),
+    /// Profile a pipeline: time, bytes and bandwidth of each stage over many frames; traces.
+    Profile(Box<profile::ProfileArgs>),
     /// Check pipelines without rendering: problems, what would run, memory, the graph as a picture.
     Check(Box<check::CheckArgs>),
     /// List kernels with their bindings and documentation.
@@ -195,6 +199,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let json = match &cli.command {
         Command::Render(args) => args.json,
+        Command::Profile(args) => args.json,
         Command::Check(args) => args.json,
         Command::Kernels(args) => args.json,
         Command::Devices(args) => args.json,
@@ -202,6 +207,7 @@ pub fn main() -> ExitCode {
     };
     let result = match &cli.command {
         Command::Render(args) => render::run(args),
+        Command::Profile(args) => profile::run(args),
         Command::Check(args) => check::run(args),
         Command::Kernels(args) => kernels::run(args),
         Command::Devices(args) => devices::run(args),

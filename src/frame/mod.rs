@@ -23,7 +23,7 @@ pub use fill::Poison;
 pub use readback::Image;
 pub use run::Changes;
 pub use scan::Finding;
-pub use timer::{Clock, Times};
+pub use timer::{Clock, CpuTimes, Tick, Times};
 
 use crate::device::Gpu;
 use crate::graph::{self, Graph};

@@ -5,8 +5,17 @@ use bytemuck::{NoUninit, Zeroable};
 use std::borrow::Cow;
 
 /// Names of the built-in storage resources. [`super::layout::layout`] tells their elements.
-pub const NAMES: [&str; 8] =
-    ["vertices", "vertex_extras", "triangles", "instances", "materials", "texels", "lights", "views"];
+pub const NAMES: [&str; 9] = [
+    "vertices",
+    "vertex_extras",
+    "triangles",
+    "instances",
+    "materials",
+    "texels",
+    "lights",
+    "views",
+    "environment",
+];
 
 impl Scene {
     /// The content of the built-in storage resource `name`. An empty list is one zeroed element, since a binding
@@ -21,6 +30,7 @@ impl Scene {
             "texels" => list(&self.texels),
             "lights" => list(&self.lights),
             "views" => list(&self.views),
+            "environment" => list(self.environment.as_ref().map_or(&[][..], |e| &e.texels)),
             _ => return None,
         })
     }

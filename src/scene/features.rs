@@ -3,6 +3,7 @@
 //! [`NAMES`] says what there is without a scene at hand; [`features`] gives the values, in the same order.
 
 use super::Scene;
+use super::environment::Environment;
 use super::image::{Image, SECOND_UV};
 use super::layout::{DIRECTIONAL, DOUBLE_SIDED, Material, POINT, SPOT, VertexExtra};
 use glam::{UVec4, Vec3};
@@ -95,7 +96,19 @@ features! { scene, used;
     "lights.total" Number "Number of lights, not counting emissive triangles." = scene.lights.len() as f64;
     "views.total" Number "Number of views: six for each point light, one for each other light."
         = scene.views.len() as f64;
+    "scene.environment" Flag "Light comes from far away." = scene.environment.is_some();
+    "scene.environment_width" Number "Columns of the environment's picture; 0 without." = environment(scene, |e| e.width.into());
+    "scene.environment_height" Number "Rows of the environment's picture; 0 without."
+        = environment(scene, |e| e.height.into());
+    "scene.environment_levels" Number "Mip levels of the environment's picture; 0 without."
+        = environment(scene, |e| e.levels.into());
+    "scene.environment_turn" Number "Radians by which the environment is turned about the vertical axis."
+        = environment(scene, |e| e.turn.into());
     "cameras.total" Number "Number of cameras." = scene.cameras.len() as f64;
+}
+
+fn environment(scene: &Scene, of: impl Fn(&Environment) -> f64) -> f64 {
+    scene.environment.as_ref().map_or(0.0, of)
 }
 
 fn vector(v: Vec3) -> [f64; 3] {

@@ -279,6 +279,7 @@ static CAMERA: StructLayout = layout_of!(CameraUniform as "Camera" {
     view_projection: Mat4x4F, inverse_view_projection: Mat4x4F, position: Vec3F, near: F32, forward: Vec3F,
     aspect: F32, right: Vec3F, parallel: F32, up: Vec3F, distance: Vec4F
 });
+static ENVIRONMENT: StructLayout = StructLayout { name: "vec4f", stride: 16, fields: &[] };
 static TEXEL: StructLayout = StructLayout { name: "u32", stride: 4, fields: &[] };
 
 /// The element of the built-in resource `name`: a storage buffer of [`super::buffers::NAMES`], or the uniform
@@ -291,6 +292,7 @@ pub fn layout(name: &str) -> Option<&'static StructLayout> {
         "instances" => &INSTANCE,
         "materials" => &MATERIAL,
         "texels" => &TEXEL,
+        "environment" => &ENVIRONMENT,
         "lights" => &LIGHT,
         "views" => &VIEW,
         "camera" => &CAMERA,

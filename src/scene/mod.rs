@@ -15,6 +15,7 @@
 //! | [`layout`] | the types of the lists, as kernels see them |
 //! | [`buffers`] | the lists as bytes |
 //! | [`views`] | the scene as its lights see it |
+//! | [`environment`] | light from far away |
 //! | [`features`] | what conditions can ask about a scene |
 //! | [`generate`] | scenes made from published numbers |
 
@@ -22,6 +23,7 @@ mod bounds;
 pub mod buffers;
 mod camera;
 mod course;
+pub mod environment;
 pub mod features;
 pub mod generate;
 mod gltf;
@@ -40,6 +42,7 @@ pub use camera::{Camera, Lens};
 pub use image::Image;
 
 use crate::problem::{Problem, Result};
+use environment::Environment;
 use layout::{Instance, Light, Material, Triangle, Vertex, VertexExtra, View};
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -65,6 +68,7 @@ pub struct Scene {
     pub texels: Vec<u32>,
     pub lights: Vec<Light>,
     pub views: Vec<View>,
+    pub environment: Option<Environment>,
     /// At least one.
     pub cameras: Vec<Camera>,
     /// Of all triangles, in the world, at all times.

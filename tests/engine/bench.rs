@@ -33,6 +33,11 @@ pub fn scene(name: &str) -> Scene {
     scene::load(&root(&format!("scenes/{name}.glb"))).expect("a scene of this repository")
 }
 
+/// The Cornell box with a block and a light that move.
+pub fn moving_scene() -> Scene {
+    scene::load(&root("scenes/cornell-moving.ron")).expect("a scene of this repository")
+}
+
 /// The names of all shipped pipelines.
 pub fn shipped() -> Vec<String> {
     let names: Vec<String> = std::fs::read_dir(root("pipelines"))

@@ -9,6 +9,8 @@ mod drawing;
 mod faults;
 mod graphs;
 mod looping;
+mod moving;
+mod omitting;
 mod parts;
 mod remembering;
 mod same_bits;

@@ -35,7 +35,8 @@ fn tables_are_what_wgsl_lays_out() {
     for name in buffers::NAMES.iter().chain(&["camera"]) {
         let table = layout(name).unwrap();
         let Some((_, ty)) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(table.name)) else {
-            assert_eq!((*name, table.name, table.stride, table.fields.len()), ("texels", "u32", 4, 0));
+            let lists = [("texels", "u32", 4, 0), ("environment", "vec4f", 16, 0)];
+            assert!(lists.contains(&(*name, table.name, table.stride, table.fields.len())), "{name}");
             continue;
         };
         let naga::TypeInner::Struct { members, span } = &ty.inner else { panic!("{name} is a struct") };
@@ -85,7 +86,8 @@ fn features_are_those_that_are_named() {
     let wanted = "scene.triangles scene.still_triangles scene.vertices scene.materials scene.instances scene.min scene.max \
         scene.emissive scene.max_emission scene.textured scene.roughness_textured scene.normal_mapped scene.second_uv \
         scene.vertex_colors scene.vertex_extras scene.masked scene.double_sided scene.min_roughness scene.max_metallic \
-        scene.moving scene.duration lights.point lights.spot lights.directional lights.total views.total cameras.total";
+        scene.moving scene.duration lights.point lights.spot lights.directional lights.total views.total scene.environment scene.environment_width \
+        scene.environment_height scene.environment_levels scene.environment_turn cameras.total";
     assert_eq!(named.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" "), wanted);
 }
 

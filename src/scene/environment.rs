@@ -1,0 +1,105 @@
+//! Environments: light that comes from infinitely far away, by direction.
+//!
+//! An environment is a picture of all directions: column u of [0, 1) is the direction `turn + (u − ½) · 360°` about the
+//! vertical axis, 0° along −z and growing towards +x; row v of [0, 1) is v · 180° down from +y. Texels are radiances,
+//! W/(sr·m²), in linear Rec. 709. A constant environment is one texel.
+
+use glam::{Vec3, Vec4};
+use image::{ImageReader, Limits};
+use std::f32::consts::PI;
+use std::path::Path;
+
+/// Widest picture in texels: 8192 × 4096 with its mip levels take 683 MiB.
+const MOST_WIDTH: u32 = 8192;
+
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Environment {
+    pub width: u32,
+    pub height: u32,
+    pub levels: u32,
+    /// The picture, then its mip levels, each half the one before, rounded down but at least 1; the fourth component is 0.
+    /// A level is the mean of the one before, weighted by solid angle.
+    pub texels: Vec<Vec4>,
+    /// Radians by which the picture is turned about the vertical axis, from −z towards +x.
+    pub turn: f32,
+}
+
+impl Environment {
+    /// The same radiance from everywhere.
+    ///
+    /// Errors: a sentence, if it is negative or not finite.
+    pub fn constant(radiance: Vec3) -> Result<Self, String> {
+        Self::of(1, 1, vec![radiance.extend(0.0)])
+    }
+
+    /// A picture (`.hdr`, `.exr`), all of whose texels are multiplied by `strength`.
+    ///
+    /// Errors: a sentence that says what is wrong with the file.
+    pub fn read(path: &Path, strength: f32) -> Result<Self, String> {
+        let mut reader = ImageReader::open(path).map_err(|error| format!("it can't be read: {error}"))?;
+        let mut limits = Limits::default();
+        (limits.max_image_width, limits.max_image_height) = (Some(MOST_WIDTH), Some(MOST_WIDTH / 2));
+        limits.max_alloc = Some(1 << 30);
+        reader.limits(limits);
+        let reader = reader.with_guessed_format().map_err(|error| format!("it can't be read: {error}"))?;
+        if !matches!(reader.format(), Some(image::ImageFormat::Hdr | image::ImageFormat::OpenExr)) {
+            return Err("it is neither a Radiance (.hdr) nor an OpenEXR picture".to_owned());
+        }
+        let pixels = reader.decode().map_err(|error| format!("it can't be decoded: {error}"))?.into_rgb32f();
+        let (width, height) = pixels.dimensions();
+        let texels = pixels.pixels().map(|p| (Vec3::from(p.0) * strength).extend(0.0)).collect();
+        Self::of(width, height, texels)
+    }
+
+    fn of(width: u32, height: u32, texels: Vec<Vec4>) -> Result<Self, String> {
+        let wrong = |t: &Vec4| !(t.is_finite() && t.min_element() >= 0.0);
+        if let Some(index) = texels.iter().position(wrong) {
+            let (x, y) = (index as u32 % width, index as u32 / width);
+            return Err(format!("the radiance at column {x}, row {y} is negative or not finite"));
+        }
+        let mut made = Self { width, height, levels: 1, texels, turn: 0.0 };
+        made.add_levels();
+        Ok(made)
+    }
+
+    fn add_levels(&mut self) {
+        let (mut start, mut size) = (0, (self.width, self.height));
+        while size != (1, 1) {
+            let next = ((size.0 / 2).max(1), (size.1 / 2).max(1));
+            let level = shrink(&self.texels[start..], size, next);
+            start = self.texels.len();
+            self.texels.extend(level);
+            self.levels += 1;
+            size = next;
+        }
+    }
+
+    /// Mean radiance over all directions.
+    pub fn mean(&self) -> Vec3 {
+        self.texels.last().map_or(Vec3::ZERO, |texel| texel.truncate())
+    }
+}
+
+/// Means over blocks of texels, weighted by the solid angles of their rows.
+fn shrink(from: &[Vec4], size: (u32, u32), to: (u32, u32)) -> Vec<Vec4> {
+    // Which texels a coarser one stands for: with odd sizes the last one takes one more.
+    let block = |i: u32, to: u32, size: u32| {
+        let end = if i + 1 == to { size } else { (i + 1) * (size / to) };
+        i * (size / to)..end
+    };
+    let weight = |row: u32| ((row as f32 + 0.5) / size.1 as f32 * PI).sin();
+    let mut out = Vec::with_capacity((to.0 * to.1) as usize);
+    for y in 0..to.1 {
+        for x in 0..to.0 {
+            let (mut sum, mut weights) = (Vec4::ZERO, 0.0);
+            for row in block(y, to.1, size.1) {
+                for column in block(x, to.0, size.0) {
+                    sum += from[(row * size.0 + column) as usize] * weight(row);
+                    weights += weight(row);
+                }
+            }
+            out.push(sum / weights);
+        }
+    }
+    out
+}
