@@ -27,7 +27,7 @@ fn colours_of_every_kind() {
         let scene = load(&document).unwrap();
         for (extra, color) in scene.vertex_extras.iter().zip(colors.chunks_exact(3)) {
             let [r, g, b, a] = extra.unpacked_color();
-            let off = [r, g, b].iter().zip(color).map(|(c, wanted)| (f64::from(*c) - wanted).abs());
+            let off = [r, g, b].into_iter().zip(color).map(|(c, wanted)| (f64::from(c) - wanted).abs());
             assert!(off.fold(0.0, f64::max) < 0.003 && a == 1.0, "{component}: {r} {g} {b} {a}");
         }
         assert_eq!(feature(&scene, "scene.vertex_colors"), Feature::Flag(true));
