@@ -156,7 +156,7 @@ fn expected(scene: &Scene, material: u32, sets: [Place; 2], x: u32) -> [DVec4; 4
     let normal = |texel: DVec4, scale: f64| {
         let map = (texel.truncate() * 2.0 - 1.0) * DVec3::new(scale, scale, 1.0);
         let (n, t) = (DVec3::new(0.25, 1.0, 0.5), DVec3::new(1.0, -0.125, 0.25));
-        let sign = if x % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = if x.is_multiple_of(2) { 1.0 } else { -1.0 };
         let bent = t * map.x + n.cross(t) * sign * map.y + n * map.z;
         if x == 5 { n.normalize().extend(1.0) } else { bent.normalize().extend(1.0) }
     };

@@ -3,3 +3,4 @@
 mod documents;
 mod hostile;
 mod right;
+mod surfaces;
