@@ -10,6 +10,7 @@ mod kernels;
 mod outputs;
 mod picture_graph;
 mod render;
+mod scenes;
 
 use crate::library::Library;
 use crate::problem::{Problem, Problems, Result};
@@ -39,6 +40,8 @@ enum Command {
     Kernels(kernels::KernelsArgs),
     /// List adapters and what each can do.
     Devices(devices::DevicesArgs),
+    /// List scenes, how to get those whose models are not there, and what a scene has.
+    Scenes(scenes::ScenesArgs),
     /// Write the generated scenes.
     Generate(generate::GenerateArgs),
 }
@@ -160,6 +163,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => args.json,
         Command::Kernels(args) => args.json,
         Command::Devices(args) => args.json,
+        Command::Scenes(args) => args.json,
         Command::Generate(_) => false,
     };
     let result = match &cli.command {
@@ -167,6 +171,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::run(args),
         Command::Kernels(args) => kernels::run(args),
         Command::Devices(args) => devices::run(args),
+        Command::Scenes(args) => scenes::run(args),
         Command::Generate(args) => generate::run(args),
     };
     match result {

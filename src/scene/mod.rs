@@ -17,6 +17,7 @@
 //! | [`views`] | the scene as its lights see it |
 //! | [`features`] | what conditions can ask about a scene |
 //! | [`generate`] | scenes made from published numbers |
+//! | [`listing`] | what scenes a folder has |
 
 mod bounds;
 pub mod buffers;
@@ -27,6 +28,7 @@ mod gltf;
 mod image;
 pub mod layout;
 mod lights;
+pub mod listing;
 mod setting;
 #[cfg(test)]
 mod tests;
@@ -40,6 +42,9 @@ use crate::problem::{Problem, Result};
 use layout::{Instance, Light, Material, Triangle, Vertex, View};
 use std::fmt;
 use std::path::{Path, PathBuf};
+
+/// How far from the origin a scene may reach in metres, lights and cameras with it: f32 holds the squares of distances.
+pub const FARTHEST: f32 = 1e18;
 
 /// A scene as loaded. Every index in it is in range, every number finite.
 #[derive(Clone, Debug, Default)]
@@ -125,7 +130,7 @@ impl Scene {
         self
     }
 
-    /// The box around all triangles; `None` if a corner is not finite in the world.
+    /// The box around all triangles; `None` if a corner is beyond [`FARTHEST`] in the world.
     fn world_bounds(&self) -> Option<Bounds> {
         let corners = self.triangles.iter().flat_map(|triangle| {
             let to_world = self.instances[triangle.instance as usize].to_world;
@@ -135,8 +140,13 @@ impl Scene {
                 x * p.x + y * p.y + z * p.z + w
             })
         });
-        let mut finite = true;
-        let bounds = Bounds::around(corners.inspect(|corner| finite &= corner.is_finite()));
-        finite.then_some(bounds.unwrap_or_default())
+        let mut near = true;
+        let bounds = Bounds::around(corners.inspect(|corner| near &= is_near(*corner)));
+        near.then_some(bounds.unwrap_or_default())
     }
+}
+
+/// Whether all coordinates are within [`FARTHEST`]; NaN is not.
+fn is_near(point: glam::Vec3) -> bool {
+    point.abs().cmple(glam::Vec3::splat(FARTHEST)).all()
 }

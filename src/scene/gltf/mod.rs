@@ -9,18 +9,21 @@
 //! the JSON pointer of its place.
 
 mod accessor;
+mod budget;
+mod census;
 mod container;
 mod file;
 mod material;
 mod mesh;
 mod nodes;
 mod notes;
+pub(super) mod outline;
 mod punctual;
 mod texture;
 pub(super) mod uri;
 
 use super::Scene;
-use super::layout::{Instance, Triangle};
+use super::layout::{Instance, Triangle, Vertex};
 use crate::problem::Result;
 use file::File;
 pub(super) use file::read;
@@ -80,7 +83,7 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
     match scene.world_bounds() {
         Some(bounds) => scene.bounds = bounds,
         None => {
-            notes.fault("/nodes", Fault::new("gltf-value", "the scene reaches beyond what a float can hold"))
+            notes.fault("/nodes", Fault::new("gltf-value", "the scene reaches farther than 10¹⁸ m"))
         }
     }
     scene.lacks = notes.finish()?;
@@ -128,6 +131,9 @@ impl<'a> Builder<'a> {
             self.notes.lack("skinned mesh", "drawn at rest");
         }
         for (i, primitive) in mesh.primitives.iter().enumerate() {
+            if self.notes.is_full() {
+                return;
+            }
             if let Err(fault) = self.place_primitive(placed, mesh, (index, i), primitive) {
                 self.notes.fault(format_args!("/meshes/{index}/primitives/{i}"), fault);
             }
@@ -142,6 +148,7 @@ impl<'a> Builder<'a> {
         at: (usize, usize),
         primitive: &Primitive,
     ) -> Result<(), Fault> {
+        self.file.budget.hold(size_of::<Instance>() as u64)?;
         let materials = &self.file.root.materials;
         let (material, uv_set) = match primitive.material.map(|material| material.value()) {
             None => (materials.len(), None),
@@ -151,7 +158,10 @@ impl<'a> Builder<'a> {
                 (index, material::uv_set(json))
             }
         };
+        let before = self.meshes.vertices.len();
         let Some(corners) = self.meshes.part(self.file, mesh, at, uv_set, self.notes) else { return Ok(()) };
+        let vertices = (self.meshes.vertices.len() - before) * size_of::<Vertex>();
+        self.file.budget.hold((vertices + corners.len() * size_of::<Triangle>()) as u64)?;
         if self.scene.triangles.len() + corners.len() > MOST_TRIANGLES {
             return Err(Fault::new(
                 "gltf-size",
