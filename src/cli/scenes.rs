@@ -48,7 +48,10 @@ pub fn run(args: &ScenesArgs) -> Result<()> {
         text.push('\n');
     }
     if args.paths.is_empty() {
-        let absent = generate::ALL.map(|(name, _)| name).into_iter().filter(|name| !Path::new(FOLDER).join(name).is_file());
+        let absent = generate::ALL
+            .map(|(name, _)| name)
+            .into_iter()
+            .filter(|name| !Path::new(FOLDER).join(name).is_file());
         for name in absent {
             let _infallible = writeln!(text, "built in: {name}; `voxgi generate` writes it to `{FOLDER}/`");
             values.push(json!({ "path": null, "name": name, "get": "voxgi generate" }));

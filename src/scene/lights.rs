@@ -1,7 +1,7 @@
 //! Lights from checked numbers, the same for glTF files and settings. Errors are sentences that name the number.
 
-use super::layout::{DIRECTIONAL, Light, POINT, SPOT};
 use super::is_near;
+use super::layout::{DIRECTIONAL, Light, POINT, SPOT};
 use glam::{DVec3, Vec3};
 use std::f64::consts::FRAC_PI_2;
 

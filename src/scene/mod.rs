@@ -88,7 +88,8 @@ impl fmt::Display for Lack {
                 let split =
                     [" of ", " in ", " with", " that "].iter().filter_map(|w| self.what.find(w)).min();
                 let (noun, rest) = self.what.split_at(split.unwrap_or(self.what.len()));
-                write!(f, "{count} {noun}s{rest} are {}", self.instead)
+                let plural = if noun.ends_with("sh") { "es" } else { "s" };
+                write!(f, "{count} {noun}{plural}{rest} are {}", self.instead)
             }
         }
     }

@@ -85,11 +85,10 @@ pub fn rich() -> Document {
     put(&floats(&[1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1., 0., 0., 0., 0., 1.]));
     put(&picture(image::ImageFormat::Png));
     put(&picture(image::ImageFormat::Jpeg));
-    let accessor = |view: u32, component: u32, kind: &str, count: u32| {
-        json!({"bufferView": view, "componentType": component, "type": kind, "count": count})
-    };
+    let accessor = |view: u32, component: u32, kind: &str, count: u32| json!({"bufferView": view, "componentType": component, "type": kind, "count": count});
     let mut sparse = accessor(0, 5126, "VEC3", 4);
-    sparse["sparse"] = json!({"count": 2, "indices": {"bufferView": 6, "componentType": 5123}, "values": {"bufferView": 7}});
+    sparse["sparse"] =
+        json!({"count": 2, "indices": {"bufferView": 6, "componentType": 5123}, "values": {"bufferView": 7}});
     let mut colors = accessor(5, 5121, "VEC4", 4);
     colors["normalized"] = json!(true);
     let texture = |index: u32| json!({"index": index, "texCoord": index % 2});

@@ -36,5 +36,8 @@ fn settings_are_answered() {
 #[test]
 fn one_input_again() {
     let Some(folder) = std::env::var_os("VOXGI_FUZZ_REPLAY") else { return };
-    replay(folder.as_ref(), &mut [&mut scenes::Scenes::new(), &mut texts::Pipelines::new(), &mut texts::Settings::new()]);
+    replay(
+        folder.as_ref(),
+        &mut [&mut scenes::Scenes::new(), &mut texts::Pipelines::new(), &mut texts::Settings::new()],
+    );
 }

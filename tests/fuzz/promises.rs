@@ -10,33 +10,54 @@ pub fn scene(scene: &Scene) {
         (scene.vertices.len(), scene.instances.len(), scene.materials.len());
     for triangle in &scene.triangles {
         let corners = [triangle.a, triangle.b, triangle.c];
-        assert!(corners.iter().all(|corner| (*corner as usize) < vertices), "a corner is beyond the vertices");
+        assert!(
+            corners.iter().all(|corner| (*corner as usize) < vertices),
+            "a corner is beyond the vertices"
+        );
         assert!((triangle.instance as usize) < instances, "an instance is beyond the instances");
     }
-    assert!(scene.instances.iter().all(|i| (i.material as usize) < materials), "a material is beyond the materials");
+    assert!(
+        scene.instances.iter().all(|i| (i.material as usize) < materials),
+        "a material is beyond the materials"
+    );
     let finite = |words: &[u8]| floats(words).all(f32::is_finite);
     for vertex in &scene.vertices {
-        assert!(vertex.position.is_finite() && vertex.u.is_finite() && vertex.v.is_finite(), "a vertex is not finite");
+        assert!(
+            vertex.position.is_finite() && vertex.u.is_finite() && vertex.v.is_finite(),
+            "a vertex is not finite"
+        );
         assert!((vertex.normal.length() - 1.0).abs() < 1e-3, "a normal has no unit length");
     }
     for instance in &scene.instances {
         assert!(finite(bytemuck::bytes_of(&instance.to_world)), "a transform is not finite");
-        assert!(finite(bytemuck::bytes_of(&instance.normal_to_world)), "a transform of normals is not finite");
+        assert!(
+            finite(bytemuck::bytes_of(&instance.normal_to_world)),
+            "a transform of normals is not finite"
+        );
     }
     for material in &scene.materials {
         let parts = [material.base_color, material.emission];
-        assert!(parts.iter().all(|part| part.is_finite() && part.min_element() >= 0.0), "a material is not finite");
+        assert!(
+            parts.iter().all(|part| part.is_finite() && part.min_element() >= 0.0),
+            "a material is not finite"
+        );
         assert!((0.0..=1.0).contains(&material.roughness) && (0.0..=1.0).contains(&material.metallic));
         assert!(material.alpha_cutoff.is_finite());
         for image in [material.base_color_image, material.emission_image] {
-            assert!(image.y == 0 || in_texels(scene, [image.x, image.y, image.z, image.w >> 8]), "an image is beyond the texels");
+            assert!(
+                image.y == 0 || in_texels(scene, [image.x, image.y, image.z, image.w >> 8]),
+                "an image is beyond the texels"
+            );
         }
     }
     for light in &scene.lights {
         let parts = [light.position, light.direction, light.intensity];
         assert!(parts.iter().all(|part| part.is_finite()), "a light is not finite");
         assert!(light.cos_inner.is_finite() && light.cos_outer.is_finite(), "a spot is not finite");
-        assert!((light.first_view + light.view_count) as usize <= scene.views.len(), "a view is beyond the views");
+        assert!(
+            (light.first_view + light.view_count) as usize <= scene.views.len(),
+            "a view is beyond the views"
+        );
     }
     for view in &scene.views {
         assert!(finite(bytemuck::bytes_of(view)), "a view is not finite");

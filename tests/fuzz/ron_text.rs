@@ -10,8 +10,22 @@ pub struct Corpus {
 }
 
 const NUMBERS: [&str; 16] = [
-    "0", "1", "-1", "2", "3.5", "1e-30", "1e30", "1e400", "-0.0", "NaN", "inf", "4294967296", "-9223372036854775808",
-    "18446744073709551616", "0x7fffffff", "65537",
+    "0",
+    "1",
+    "-1",
+    "2",
+    "3.5",
+    "1e-30",
+    "1e30",
+    "1e400",
+    "-0.0",
+    "NaN",
+    "inf",
+    "4294967296",
+    "-9223372036854775808",
+    "18446744073709551616",
+    "0x7fffffff",
+    "65537",
 ];
 
 impl Corpus {
@@ -60,8 +74,10 @@ impl Corpus {
                 let groups = groups(text);
                 let Some(group) = dice.choice(&groups).cloned() else { return };
                 let donor = &self.texts[dice.usize(..self.texts.len())];
-                let others: Vec<_> =
-                    self::groups(donor).into_iter().filter(|o| donor.as_bytes()[o.start] == text.as_bytes()[group.start]).collect();
+                let others: Vec<_> = self::groups(donor)
+                    .into_iter()
+                    .filter(|o| donor.as_bytes()[o.start] == text.as_bytes()[group.start])
+                    .collect();
                 if let Some(other) = dice.choice(&others) {
                     text.replace_range(group, &donor[other.clone()]);
                 }
@@ -80,7 +96,8 @@ impl Corpus {
                 let entries = lines(text);
                 let Some(line) = dice.choice(&entries).cloned() else { return };
                 let copy = text[line.clone()].to_owned();
-                let at = if dice.bool() { line.end } else { dice.choice(&entries).map_or(0, |line| line.start) };
+                let at =
+                    if dice.bool() { line.end } else { dice.choice(&entries).map_or(0, |line| line.start) };
                 text.insert_str(at, &copy.repeat(if dice.usize(..20) == 0 { dice.usize(1..200) } else { 1 }));
             }
             _ => {
@@ -114,7 +131,11 @@ fn pieces(text: &str) -> Vec<Range<usize>> {
         let wordy = c.is_alphanumeric() || c == '_';
         let end = at + c.len_utf8();
         match list.last_mut() {
-            Some(last) if wordy && last.end == at && text[last.clone()].ends_with(|c: char| c.is_alphanumeric() || c == '_') => {
+            Some(last)
+                if wordy
+                    && last.end == at
+                    && text[last.clone()].ends_with(|c: char| c.is_alphanumeric() || c == '_') =>
+            {
                 last.end = end;
             }
             _ => list.push(at..end),

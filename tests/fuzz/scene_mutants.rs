@@ -63,8 +63,10 @@ fn change_bytes(bytes: &mut Vec<u8>, dice: &mut Rng) {
         2 | 3 => bytes[at] = dice.u8(..),
         4 => bytes[at] ^= 1 << dice.u8(..8),
         _ => {
-            let special = [f32::NAN, f32::INFINITY, -f32::INFINITY, 3e38, -3e38, 1e-40, 0.0, -0.0, 1e19, 1e-19];
-            let word = if dice.bool() { special[dice.usize(..10)].to_bits() } else { NUMBERS[dice.usize(..14)] };
+            let special =
+                [f32::NAN, f32::INFINITY, -f32::INFINITY, 3e38, -3e38, 1e-40, 0.0, -0.0, 1e19, 1e-19];
+            let word =
+                if dice.bool() { special[dice.usize(..10)].to_bits() } else { NUMBERS[dice.usize(..14)] };
             if let Some(word_there) = bytes.get_mut(at & !3..(at & !3) + 4) {
                 word_there.copy_from_slice(&word.to_le_bytes());
             }
@@ -81,7 +83,9 @@ fn change_text(text: &mut Vec<u8>, dice: &mut Rng) {
             text[at..end].to_vec()
         }
         1 => b"[".repeat(dice.usize(1..3000)),
-        2 => [&b"1e400"[..], b"-1e400", b"18446744073709551616", b"4294967296", b"4294967295.0"][dice.usize(..5)].to_vec(),
+        2 => [&b"1e400"[..], b"-1e400", b"18446744073709551616", b"4294967296", b"4294967295.0"]
+            [dice.usize(..5)]
+        .to_vec(),
         3 => {
             let keys = text.iter().enumerate().filter(|(_, byte)| **byte == b'{').map(|(i, _)| i + 1);
             let places: Vec<usize> = keys.collect();
@@ -119,7 +123,8 @@ fn change_value(document: &mut Value, donors: &[Document], dice: &mut Rng) {
             // A value that has this name elsewhere, here or in another document.
             let donor = if dice.bool() { None } else { dice.choice(donors) };
             let from = donor.map_or(&*document, |donor| &donor.json).clone();
-            let alike: Vec<_> = pointers(&from).into_iter().filter(|p| p.rsplit('/').next() == Some(name)).collect();
+            let alike: Vec<_> =
+                pointers(&from).into_iter().filter(|p| p.rsplit('/').next() == Some(name)).collect();
             if let (Some(there), Some(here)) = (dice.choice(&alike), document.pointer_mut(&place)) {
                 *here = from.pointer(there).cloned().unwrap_or_default();
             }
@@ -128,9 +133,16 @@ fn change_value(document: &mut Value, donors: &[Document], dice: &mut Rng) {
             // A member that its likes have and this object lacks.
             let Some(donor) = dice.choice(donors) else { return };
             let likes = pointers(&donor.json);
-            let shape = |pointer: &str| pointer.split('/').filter(|p| p.parse::<u32>().is_err()).collect::<Vec<_>>().join("/");
-            let likes: Vec<_> = likes.into_iter().filter(|p| p.rsplit_once('/').is_some_and(|(up, _)| shape(up) == shape(parent))).collect();
-            if let (Some(there), Some(Value::Object(map))) = (dice.choice(&likes), document.pointer_mut(parent)) {
+            let shape = |pointer: &str| {
+                pointer.split('/').filter(|p| p.parse::<u32>().is_err()).collect::<Vec<_>>().join("/")
+            };
+            let likes: Vec<_> = likes
+                .into_iter()
+                .filter(|p| p.rsplit_once('/').is_some_and(|(up, _)| shape(up) == shape(parent)))
+                .collect();
+            if let (Some(there), Some(Value::Object(map))) =
+                (dice.choice(&likes), document.pointer_mut(parent))
+            {
                 let key = there.rsplit('/').next().unwrap_or_default();
                 map.insert(key.to_owned(), donor.json.pointer(there).cloned().unwrap_or_default());
             }
@@ -170,12 +182,31 @@ fn nudge(value: &mut Value, dice: &mut Rng) {
                 6 => f64::from(NUMBERS[dice.usize(..14)]),
                 _ => old * 10_f64.powi(dice.i32(-40..40)),
             };
-            *value = if new.fract() == 0.0 && (0.0..1e15).contains(&new) { json!(new as u64) } else { json!(new) };
+            *value =
+                if new.fract() == 0.0 && (0.0..1e15).contains(&new) { json!(new as u64) } else { json!(new) };
         }
         Value::Bool(flag) => *flag = !*flag,
         Value::String(text) => {
-            let strange = ["", "..", "/etc/passwd", "%2e%2e/x", "a%zz", "data:,", "data:;base64,AAAA", "buffer.bin", "\u{0}", "é", "SCALAR", "VEC4", "MAT4"];
-            *text = if dice.usize(..20) == 0 { text.repeat(1000) } else { strange[dice.usize(..strange.len())].to_owned() };
+            let strange = [
+                "",
+                "..",
+                "/etc/passwd",
+                "%2e%2e/x",
+                "a%zz",
+                "data:,",
+                "data:;base64,AAAA",
+                "buffer.bin",
+                "\u{0}",
+                "é",
+                "SCALAR",
+                "VEC4",
+                "MAT4",
+            ];
+            *text = if dice.usize(..20) == 0 {
+                text.repeat(1000)
+            } else {
+                strange[dice.usize(..strange.len())].to_owned()
+            };
         }
         Value::Array(list) => dice.shuffle(list),
         Value::Object(map) => {

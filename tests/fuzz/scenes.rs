@@ -25,7 +25,8 @@ impl Scenes {
             corpus.extend(glb::read(&path));
         }
         assert!(scene::load(&path).is_ok());
-        fs::write(&path, glb::binary(&serde_json::to_vec(&corpus[0].json).unwrap(), &corpus[0].bytes)).unwrap();
+        fs::write(&path, glb::binary(&serde_json::to_vec(&corpus[0].json).unwrap(), &corpus[0].bytes))
+            .unwrap();
         scene::load(&path).unwrap_or_else(|problems| panic!("the rich document is right: {problems}"));
         let mut files = Vec::new();
         let mut folders: Vec<_> = std::env::var_os("VOXGI_SCENES").map(PathBuf::from).into_iter().collect();
@@ -66,7 +67,9 @@ impl Target for Scenes {
                 promises::scene(&scene);
                 let lacks: Vec<_> = scene.lacks.iter().map(|lack| &lack.what).collect();
                 let some = |n: usize| n.min(3);
-                let counts = [scene.lights.len(), scene.cameras.len(), scene.images.len(), scene.instances.len()].map(some);
+                let counts =
+                    [scene.lights.len(), scene.cameras.len(), scene.images.len(), scene.instances.len()]
+                        .map(some);
                 Answer { accepted: true, words: format!("{counts:?} {lacks:?}") }
             }
         }

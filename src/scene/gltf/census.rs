@@ -12,9 +12,36 @@ const VALUE: u64 = 48;
 
 /// Members that hold an index or the number of a kind, of 32 bits; in lists of that name all items do.
 const NARROW: [&str; 31] = [
-    "buffer", "bufferView", "byteStride", "camera", "children", "componentType", "indices", "index", "input",
-    "inverseBindMatrices", "joints", "light", "magFilter", "material", "mesh", "minFilter", "mode", "node", "nodes",
-    "output", "sampler", "scene", "skeleton", "skin", "source", "target", "texCoord", "variants", "wrapS", "wrapT",
+    "buffer",
+    "bufferView",
+    "byteStride",
+    "camera",
+    "children",
+    "componentType",
+    "indices",
+    "index",
+    "input",
+    "inverseBindMatrices",
+    "joints",
+    "light",
+    "magFilter",
+    "material",
+    "mesh",
+    "minFilter",
+    "mode",
+    "node",
+    "nodes",
+    "output",
+    "sampler",
+    "scene",
+    "skeleton",
+    "skin",
+    "source",
+    "target",
+    "texCoord",
+    "variants",
+    "wrapS",
+    "wrapT",
     "mapping",
 ];
 
@@ -54,7 +81,8 @@ impl Place<'_> {
     /// Whether a number here is cut to 32 bits.
     fn is_narrow(&self) -> bool {
         let list = self.up.and_then(Place::member);
-        matches!(list, Some("attributes" | "targets")) || self.member().is_some_and(|name| NARROW.contains(&name))
+        matches!(list, Some("attributes" | "targets"))
+            || self.member().is_some_and(|name| NARROW.contains(&name))
     }
 }
 

@@ -32,14 +32,16 @@ impl File {
         let name = path.display();
         let content = read(path)?;
         let (json, binary) = split(&content).map_err(|fault| fault.at(&name.to_string(), "the start"))?;
-        let no_document = |error: gltf::json::Error| {
-            let message = format!("`{name}` is not a glTF document: {}", brief(&format!("{error}")));
+        let no_document = |error: String| {
+            let message = format!("`{name}` is not a glTF document: {}", brief(&error));
             Problem::input("gltf-json", message)
                 .help("a .glb file begins with `glTF`, and a .gltf file is JSON; export it again")
         };
         let budget = Budget::default();
         budget.read(content.len() as u64);
-        let taken = census(json).map_err(no_document)?.saturating_add(content.len() as u64);
+        let taken = census(json)
+            .map_err(|error| no_document(error.to_string()))?
+            .saturating_add(content.len() as u64);
         budget.hold(taken).map_err(|fault| fault.at(&name.to_string(), "the whole document"))?;
         let root = parse(json).map_err(no_document)?;
         if !root.asset.version.starts_with("2.") {

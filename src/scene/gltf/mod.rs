@@ -82,9 +82,7 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
     (scene.texels, scene.images, scene.files) = (textures.texels, textures.images, file.read);
     match scene.world_bounds() {
         Some(bounds) => scene.bounds = bounds,
-        None => {
-            notes.fault("/nodes", Fault::new("gltf-value", "the scene reaches farther than 10¹⁸ m"))
-        }
+        None => notes.fault("/nodes", Fault::new("gltf-value", "the scene reaches farther than 10¹⁸ m")),
     }
     scene.lacks = notes.finish()?;
     Ok(scene)

@@ -75,7 +75,9 @@ pub fn camera(root: &Root, placed: &Placed, notes: &mut Notes) -> Option<Camera>
         Some(camera) => {
             let camera = Camera { vertical_fov: angle, near, ..camera };
             if !camera.is_usable() {
-                let message = format!("yfov {angle}, znear {near} or the position {eye} is beyond what a float can hold");
+                let message = format!(
+                    "yfov {angle}, znear {near} or the position {eye} is beyond what a float can hold"
+                );
                 notes.fault(pointer, Fault::new("gltf-camera", message));
                 return None;
             }
