@@ -1,6 +1,7 @@
 // The scene's triangles, in world space (metres).
 //
-// Cost of a corner: 1 vertex (32 B); of a triangle's record 16 B, of its instance 128 B.
+// Cost of a corner: 1 vertex (32 B), and as much again where the scene has vertex colours or second texture coordinates; of
+// a triangle's record 16 B, of its instance 128 B.
 
 import lib/math;
 
@@ -27,8 +28,21 @@ struct Instance {
     flip: f32,
 }
 
+/// What only some scenes' vertices have; the same index.
+@if(scene.vertex_extras)
+struct VertexExtra {
+    /// Object space; zero where there is no normal map. The bitangent is `w * cross(normal, tangent)`.
+    tangent: vec4f,
+    /// Four halves.
+    color: vec2u,
+    /// The second set of texture coordinates.
+    uv: vec2f,
+}
+
 /// Vertices in the space of their mesh.
 var<storage, read> vertices: array<Vertex>;
+@if(scene.vertex_extras)
+var<storage, read> vertex_extras: array<VertexExtra>;
 var<storage, read> triangles: array<Triangle>;
 var<storage, read> instances: array<Instance>;
 
@@ -36,7 +50,10 @@ var<storage, read> instances: array<Instance>;
 struct Corner {
     position: vec3f,
     normal: vec3f,
-    uv: vec2f,
+    /// Both sets of texture coordinates; zw is 0 where no image uses the second.
+    uv: vec4f,
+    /// Multiplies the base colour and its opacity.
+    @if(scene.vertex_colors) color: vec4f,
 }
 
 /// A triangle in world space. Its front is where its corners run counter-clockwise, mirrored instances included.
@@ -53,13 +70,40 @@ fn corner_position(vertex: u32, instance: u32) -> vec3f {
     return instances[instance].to_world * vec4f(vertices[vertex].position, 1.0);
 }
 
+/// Both sets of texture coordinates.
+fn corner_uv(vertex: u32) -> vec4f {
+    var uv = vec4f(vertices[vertex].u, vertices[vertex].v, 0.0, 0.0);
+    @if(scene.second_uv) {
+        let second = vertex_extras[vertex].uv;
+        uv = vec4f(uv.xy, second);
+    }
+    return uv;
+}
+
+@if(scene.vertex_colors)
+fn corner_color(vertex: u32) -> vec4f {
+    let halves = vertex_extras[vertex].color;
+    return vec4f(unpack2x16float(halves.x), unpack2x16float(halves.y));
+}
+
+/// xyz: a unit vector, or zero where there is no normal map; w as in `VertexExtra`, for the world.
+@if(scene.normal_mapped)
+fn corner_tangent(vertex: u32, instance: u32) -> vec4f {
+    let tangent = vertex_extras[vertex].tangent;
+    let world = instances[instance].to_world * vec4f(tangent.xyz, 0.0);
+    return vec4f(unit_or(world, vec3f(0.0)), tangent.w * instances[instance].flip);
+}
+
 fn corner_of(vertex: u32, instance: u32) -> Corner {
     let v = vertices[vertex];
-    return Corner(
-        instances[instance].to_world * vec4f(v.position, 1.0),
-        unit_or(instances[instance].normal_to_world * v.normal, vec3f(0.0)),
-        vec2f(v.u, v.v),
-    );
+    var corner: Corner;
+    corner.position = instances[instance].to_world * vec4f(v.position, 1.0);
+    corner.normal = unit_or(instances[instance].normal_to_world * v.normal, vec3f(0.0));
+    corner.uv = corner_uv(vertex);
+    @if(scene.vertex_colors) {
+        corner.color = corner_color(vertex);
+    }
+    return corner;
 }
 
 fn face_of(triangle: u32) -> Face {

@@ -1,13 +1,11 @@
 // What the voxelizer leaves in each voxel: sums over its fragments (a fragment: one triangle in one voxel), in fixed
-// point (lib/fixed), read back as means.
+// point (lib/fixed), read back as means. lib/sum_words says what they are.
 //
-// A voxel takes 10 words of `sums`: count, albedo rgb, normal xyz, position within the voxel xyz.
 // Reads 4 B for an empty voxel, 40 B for a filled one.
 
 import lib/fixed;
 import lib/grid;
-
-const SUM_WORDS: u32 = 10u;
+import lib/sum_words;
 
 var<storage, read> sums: array<u32>;
 
@@ -33,19 +31,19 @@ fn surfel_of(voxel: vec3u, resolution: u32) -> Surfel {
         return Surfel(false, vec3f(0.0), vec3f(0.0), vec3f(0.0));
     }
     let albedo = vec3f(
-        mean_unsigned(sums[at + 1u], count),
-        mean_unsigned(sums[at + 2u], count),
-        mean_unsigned(sums[at + 3u], count),
+        mean_unsigned(sums[at + SUM_ALBEDO], count),
+        mean_unsigned(sums[at + SUM_ALBEDO + 1u], count),
+        mean_unsigned(sums[at + SUM_ALBEDO + 2u], count),
     );
     let normal = vec3f(
-        mean_signed(sums[at + 4u], count),
-        mean_signed(sums[at + 5u], count),
-        mean_signed(sums[at + 6u], count),
+        mean_signed(sums[at + SUM_NORMAL], count),
+        mean_signed(sums[at + SUM_NORMAL + 1u], count),
+        mean_signed(sums[at + SUM_NORMAL + 2u], count),
     );
     let within = vec3f(
-        mean_unsigned(sums[at + 7u], count),
-        mean_unsigned(sums[at + 8u], count),
-        mean_unsigned(sums[at + 9u], count),
+        mean_unsigned(sums[at + SUM_WITHIN], count),
+        mean_unsigned(sums[at + SUM_WITHIN + 1u], count),
+        mean_unsigned(sums[at + SUM_WITHIN + 2u], count),
     );
     return Surfel(true, albedo, normal, from_grid(vec3f(voxel) + within));
 }

@@ -1,8 +1,8 @@
 // Depth of the scene from a light: one layer of the light maps.
 //
 // Reversed depth (1 near, 0 far). Both sides of every surface; holes of masked materials stay open.
-// Reads per vertex: a triangle (16 B), a vertex (32 B), an instance (64 B); per fragment of masked materials 4 to 8
-// texels.
+// Reads per vertex: a triangle (16 B), a vertex (32 B, or 64 B), an instance (64 B); per fragment of masked materials 4 to
+// 8 texels.
 
 import lib/scene;
 @if(scene.masked) import lib/material;
@@ -15,8 +15,9 @@ var<uniform> view: ViewFacts;
 
 struct Varying {
     @builtin(position) clip: vec4f,
-    @if(scene.masked) @location(0) uv: vec2f,
+    @if(scene.masked) @location(0) uv: vec4f,
     @if(scene.masked) @location(1) @interpolate(flat) material: u32,
+    @if(scene.masked && scene.vertex_colors) @location(2) opacity: f32,
 }
 
 @vertex
@@ -26,8 +27,11 @@ fn vertex(@builtin(vertex_index) index: u32) -> Varying {
     var out: Varying;
     out.clip = view.view_projection * vec4f(corner_position(number, instance), 1.0);
     @if(scene.masked) {
-        out.uv = vec2f(vertices[number].u, vertices[number].v);
+        out.uv = corner_uv(number);
         out.material = instances[instance].material;
+        @if(scene.vertex_colors) {
+            out.opacity = corner_color(number).a;
+        }
     }
     return out;
 }
@@ -35,8 +39,12 @@ fn vertex(@builtin(vertex_index) index: u32) -> Varying {
 @if(scene.masked)
 @fragment
 fn fragment(in: Varying) {
-    let footprint = max(length(dpdx(in.uv)), length(dpdy(in.uv)));
-    if is_hole(in.material, base_color_at(in.material, in.uv, footprint).a) {
+    let footprint = footprint_of(dpdx(in.uv), dpdy(in.uv));
+    var opacity = base_color_at(in.material, in.uv, footprint).a;
+    @if(scene.vertex_colors) {
+        opacity *= in.opacity;
+    }
+    if is_hole(in.material, opacity) {
         discard;
     }
 }

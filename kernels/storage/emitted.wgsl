@@ -6,6 +6,7 @@
 
 import lib/fixed;
 import lib/grid;
+import lib/sum_words;
 
 struct SceneFacts {
     max_emission: f32,
@@ -13,9 +14,7 @@ struct SceneFacts {
 
 var<uniform> scene: SceneFacts;
 
-/// See lib/voxel_sums: word 0 of 10 is the number of fragments.
 var<storage, read> sums: array<u32>;
-var<storage, read> emission_sums: array<u32>;
 var voxels: texture_storage_3d<rgba16float, write>;
 
 @compute @workgroup_size(4, 4, 4)
@@ -24,14 +23,14 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     if any(id >= size) {
         return;
     }
-    let number = voxel_number(id, size.x);
-    let count = min(sums[number * 10u], MOST_TERMS);
+    let at = voxel_number(id, size.x) * SUM_WORDS;
+    let count = min(sums[at], MOST_TERMS);
     var value = vec4f(0.0);
     if count > 0u {
         let mean = vec3f(
-            mean_unsigned(emission_sums[number * 3u], count),
-            mean_unsigned(emission_sums[number * 3u + 1u], count),
-            mean_unsigned(emission_sums[number * 3u + 2u], count),
+            mean_unsigned(sums[at + SUM_EMISSION], count),
+            mean_unsigned(sums[at + SUM_EMISSION + 1u], count),
+            mean_unsigned(sums[at + SUM_EMISSION + 2u], count),
         );
         value = vec4f(mean * scene.max_emission, 1.0);
     }

@@ -3,6 +3,7 @@
 // Source: R 4.1.1 (triangle-parallel), tests in lib/overlap. A fragment's attributes are those of the triangle's point
 // nearest to the voxel's centre, images filtered to the width of a voxel. Corners are snapped to 1/4096 voxel: walls
 // along the axes stay planes to the last bit, so that both triangles of a wall fill the same layer.
+// Normals are those of the corners, not of normal maps: what a map shows is finer than a voxel.
 // Reads per thread: a triangle with 3 corners (ca. 400 B); per fragment 8 texels (×2 where it emits) for textured
 // materials; writes per fragment 10 atomic words (13). One thread walks all columns of its triangle: large triangles
 // are slow (R figure 4.6).
@@ -14,6 +15,7 @@ import lib/material;
 import lib/nearest;
 import lib/overlap;
 import lib/scene;
+import lib/sum_words;
 
 struct Knobs {
     resolution: u32,
@@ -24,17 +26,13 @@ var<uniform> knobs: Knobs;
 
 struct SceneFacts {
     triangles: u32,
-    /// Largest component of the radiance that any material emits: the unit of `emission_sums`.
+    /// Largest component of the radiance that any material emits: the unit of their sums.
     @if(scene.emissive) max_emission: f32,
 }
 
 var<uniform> scene: SceneFacts;
 
-/// 10 words a voxel: see lib/voxel_sums.
 var<storage, read_write> sums: array<atomic<u32>>;
-/// 3 words a voxel: emission rgb.
-@if(scene.emissive)
-var<storage, read_write> emission_sums: array<atomic<u32>>;
 
 struct Counters {
     fragments: atomic<u32>,
@@ -51,15 +49,20 @@ struct Source {
     /// In voxels.
     corners: array<vec3f, 3>,
     face: Face,
-    /// Width of a voxel in uv.
-    footprint: f32,
+    /// Width of a voxel in each set of texture coordinates.
+    footprint: vec2f,
 }
 
-fn uv_footprint(face: Face) -> f32 {
-    let u = face.corners[1].uv - face.corners[0].uv;
-    let v = face.corners[2].uv - face.corners[0].uv;
-    let area = 0.5 * abs(u.x * v.y - u.y * v.x);
-    return values.voxel_size * sqrt(area / max(face.area, 1e-30));
+fn uv_area(a: vec2f, b: vec2f, c: vec2f) -> f32 {
+    return 0.5 * abs(determinant(mat2x2f(b - a, c - a)));
+}
+
+fn uv_footprint(face: Face) -> vec2f {
+    let a = face.corners[0].uv;
+    let b = face.corners[1].uv;
+    let c = face.corners[2].uv;
+    let areas = vec2f(uv_area(a.xy, b.xy, c.xy), uv_area(a.zw, b.zw, c.zw));
+    return values.voxel_size * sqrt(areas / max(face.area, 1e-30));
 }
 
 /// Returns whether there was something to add: holes of masked materials have no fragments.
@@ -67,7 +70,10 @@ fn add_fragment(source: Source, voxel: vec3i) -> bool {
     let weights = nearest_weights(source.corners, vec3f(voxel) + 0.5);
     let c = source.face.corners;
     let uv = weights.x * c[0].uv + weights.y * c[1].uv + weights.z * c[2].uv;
-    let base = base_color_at(source.face.material, uv, source.footprint);
+    var base = base_color_at(source.face.material, uv, source.footprint);
+    @if(scene.vertex_colors) {
+        base *= weights.x * c[0].color + weights.y * c[1].color + weights.z * c[2].color;
+    }
     if is_hole(source.face.material, base.a) {
         return false;
     }
@@ -77,21 +83,20 @@ fn add_fragment(source: Source, voxel: vec3i) -> bool {
     );
     let p = weights.x * source.corners[0] + weights.y * source.corners[1] + weights.z * source.corners[2];
     let within = p - vec3f(voxel);
-    let number = voxel_number(vec3u(voxel), knobs.resolution);
-    let at = number * 10u;
+    let at = voxel_number(vec3u(voxel), knobs.resolution) * SUM_WORDS;
     if atomicAdd(&sums[at], 1u) >= MOST_TERMS {
         return false;
     }
     for (var i = 0u; i < 3u; i++) {
-        atomicAdd(&sums[at + 1u + i], fixed_unsigned(base[i]));
-        atomicAdd(&sums[at + 4u + i], fixed_signed(n[i]));
-        atomicAdd(&sums[at + 7u + i], fixed_unsigned(within[i]));
+        atomicAdd(&sums[at + SUM_ALBEDO + i], fixed_unsigned(base[i]));
+        atomicAdd(&sums[at + SUM_NORMAL + i], fixed_signed(n[i]));
+        atomicAdd(&sums[at + SUM_WITHIN + i], fixed_unsigned(within[i]));
     }
     @if(scene.emissive) {
         let emission = emission_at(source.face.material, uv, source.footprint) / max(scene.max_emission, 1e-30);
         for (var i = 0u; i < 3u; i++) {
             if emission[i] > 0.0 {
-                atomicAdd(&emission_sums[number * 3u + i], fixed_unsigned(emission[i]));
+                atomicAdd(&sums[at + SUM_EMISSION + i], fixed_unsigned(emission[i]));
             }
         }
     }

@@ -9,8 +9,8 @@ use crate::problem::{Place, Problem, Problems, Result, Source};
 use std::cell::OnceCell;
 
 /// What every scene gives, by the names that kernels call it.
-pub const SCENE_RESOURCES: [&str; 7] =
-    ["vertices", "triangles", "instances", "materials", "texels", "lights", "views"];
+pub const SCENE_RESOURCES: [&str; 8] =
+    ["vertices", "vertex_extras", "triangles", "instances", "materials", "texels", "lights", "views"];
 
 /// The part that plays a role.
 pub(super) struct Player {

@@ -5,7 +5,8 @@ use bytemuck::{NoUninit, Zeroable};
 use std::borrow::Cow;
 
 /// Names of the built-in storage resources. [`super::layout::layout`] tells their elements.
-pub const NAMES: [&str; 7] = ["vertices", "triangles", "instances", "materials", "texels", "lights", "views"];
+pub const NAMES: [&str; 8] =
+    ["vertices", "vertex_extras", "triangles", "instances", "materials", "texels", "lights", "views"];
 
 impl Scene {
     /// The content of the built-in storage resource `name`. An empty list is one zeroed element, since a binding
@@ -13,6 +14,7 @@ impl Scene {
     pub fn bytes(&self, name: &str) -> Option<Cow<'_, [u8]>> {
         Some(match name {
             "vertices" => list(&self.vertices),
+            "vertex_extras" => list(&self.vertex_extras),
             "triangles" => list(&self.triangles),
             "instances" => list(&self.instances),
             "materials" => list(&self.materials),

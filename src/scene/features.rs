@@ -3,8 +3,9 @@
 //! [`NAMES`] says what there is without a scene at hand; [`features`] gives the values, in the same order.
 
 use super::Scene;
-use super::layout::{DIRECTIONAL, DOUBLE_SIDED, Material, POINT, SPOT};
-use glam::Vec3;
+use super::image::{Image, SECOND_UV};
+use super::layout::{DIRECTIONAL, DOUBLE_SIDED, Material, POINT, SPOT, VertexExtra};
+use glam::{UVec4, Vec3};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Feature {
@@ -65,14 +66,25 @@ features! { scene, used;
         = used.iter().fold(0.0, |greatest, m| f64::from(m.emission.max_element()).max(greatest));
     "scene.textured" Flag "Some triangle has an image for its colour or its emission."
         = used.iter().any(|m| m.base_color_image.y > 0 || m.emission_image.y > 0);
+    "scene.roughness_textured" Flag "Some triangle has an image for its metalness and roughness."
+        = used.iter().any(|m| m.roughness_image.y > 0);
+    "scene.normal_mapped" Flag "Some triangle has an image for its normals." = normal_mapped(used);
+    "scene.second_uv" Flag "Some image is looked up by a second set of texture coordinates." = second_uv(used);
+    "scene.vertex_colors" Flag "Some vertex has a colour other than white." = vertex_colors(scene);
+    "scene.vertex_extras" Flag "Some vertex has a normal map's tangent, a second set of texture coordinates, or a colour."
+        = normal_mapped(used) || second_uv(used) || vertex_colors(scene);
     "scene.masked" Flag "Some triangle has holes where its alpha is low."
         = used.iter().any(|m| m.alpha_cutoff > 0.0);
     "scene.double_sided" Flag "Some triangle has a double-sided material."
         = used.iter().any(|m| m.flags & DOUBLE_SIDED != 0);
-    "scene.min_roughness" Number "Least roughness of a triangle's material; 1 without triangles."
-        = used.iter().fold(1.0, |least, m| f64::from(m.roughness).min(least));
-    "scene.max_metallic" Number "Greatest metalness of a triangle's material; 0 without triangles."
-        = used.iter().fold(0.0, |greatest, m| f64::from(m.metallic).max(greatest));
+    "scene.min_roughness" Number "Least roughness of a triangle's material, images included; 1 without triangles."
+        = used.iter().fold(1.0, |least, m| {
+            f64::from(m.roughness * range(scene, m.roughness_image, ROUGHNESS)[0]).min(least)
+        });
+    "scene.max_metallic" Number "Greatest metalness of a triangle's material, images included; 0 without triangles."
+        = used.iter().fold(0.0, |greatest, m| {
+            f64::from(m.metallic * range(scene, m.roughness_image, METALNESS)[1]).max(greatest)
+        });
     "scene.moving" Flag "Something in the scene moves." = false;
     "lights.point" Number "Number of point lights." = lights(scene, POINT);
     "lights.spot" Number "Number of spot lights." = lights(scene, SPOT);
@@ -85,6 +97,32 @@ features! { scene, used;
 
 fn vector(v: Vec3) -> [f64; 3] {
     v.as_dvec3().to_array()
+}
+
+/// Channels of an image of metalness and roughness.
+const ROUGHNESS: usize = 1;
+const METALNESS: usize = 2;
+
+/// Least and greatest value in a channel of the image; 1 where there is no image.
+fn range(scene: &Scene, reference: UVec4, channel: usize) -> [f32; 2] {
+    let referred = |image: &&Image| reference.y > 0 && image.offset == reference.x;
+    let image = scene.images.iter().find(referred);
+    image.map_or([1.0; 2], |image| {
+        [image.least, image.greatest].map(|texel| f32::from(texel[channel]) / 255.0)
+    })
+}
+
+fn normal_mapped(used: &[Material]) -> bool {
+    used.iter().any(|m| m.normal_image.y > 0)
+}
+
+fn second_uv(used: &[Material]) -> bool {
+    let images = |m: &Material| [m.base_color_image, m.emission_image, m.normal_image, m.roughness_image];
+    used.iter().flat_map(images).any(|image| image.y > 0 && image.w & SECOND_UV != 0)
+}
+
+fn vertex_colors(scene: &Scene) -> bool {
+    scene.vertex_extras.iter().any(|extra| extra.color != VertexExtra::NONE.color)
 }
 
 fn lights(scene: &Scene, kind: u32) -> f64 {

@@ -2,7 +2,8 @@
 //!
 //! A texel is one word, red in the lowest byte. Levels follow one another, each half the one before, rounded down
 //! but at least 1. A level is the area-weighted mean of the one before: in linear light where texels hold sRGB-coded
-//! colour, alpha always linearly. Means are carried in floats from level to level and rounded once.
+//! colour, alpha always linearly. Means are carried in floats from level to level and rounded once. A mean of normals is
+//! the mean of the vectors, not made a unit vector again: the shorter it is, the more they differ.
 
 use crate::picture::srgb;
 use glam::{UVec4, Vec4};
@@ -18,6 +19,9 @@ pub struct Image {
     pub levels: u32,
     /// Whether texels hold sRGB-coded colour.
     pub srgb: bool,
+    /// Of each channel, as stored.
+    pub least: [u8; 4],
+    pub greatest: [u8; 4],
 }
 
 /// What a texture coordinate outside 0..1 means.
@@ -35,15 +39,30 @@ pub struct Sampling {
     pub wrap: [Wrap; 2],
     /// Magnified without interpolation.
     pub nearest: bool,
+    /// By the vertices' second set of texture coordinates.
+    pub second_uv: bool,
+    /// The material has a transform for the texture coordinates.
+    pub transformed: bool,
 }
+
+/// Flags of an image reference.
+pub const NEAREST: u32 = 1 << 4;
+pub const SRGB: u32 = 1 << 5;
+pub const SECOND_UV: u32 = 1 << 6;
+pub const TRANSFORMED: u32 = 1 << 7;
 
 impl Image {
     /// The image as a material refers to it: (offset, width, height, flags). Flags: bits 0–1 wrap along u, 2–3 along v (0
-    /// repeat, 1 clamp, 2 mirror), bit 4 nearest, bit 5 sRGB-coded, bits 8–15 number of levels.
+    /// repeat, 1 clamp, 2 mirror), bit 4 nearest, bit 5 sRGB-coded, bit 6 second set of texture coordinates, bit 7
+    /// transformed ones, bits 8–15 number of levels.
     pub fn reference(&self, sampling: Sampling) -> UVec4 {
         let [u, v] = sampling.wrap.map(|wrap| wrap as u32);
-        let bits = u | v << 2 | u32::from(sampling.nearest) << 4 | u32::from(self.srgb) << 5;
-        UVec4::new(self.offset, self.width, self.height, bits | self.levels << 8)
+        let flag = |set: bool, flag: u32| if set { flag } else { 0 };
+        let flags = flag(sampling.nearest, NEAREST)
+            | flag(self.srgb, SRGB)
+            | flag(sampling.second_uv, SECOND_UV)
+            | flag(sampling.transformed, TRANSFORMED);
+        UVec4::new(self.offset, self.width, self.height, u | v << 2 | flags | self.levels << 8)
     }
 }
 
@@ -53,34 +72,36 @@ pub fn words(width: u32, height: u32) -> u64 {
 }
 
 fn sizes(width: u32, height: u32) -> impl Iterator<Item = (u32, u32)> {
-    let levels = width.max(height).max(1).ilog2() + 1;
-    (0..levels).map(move |level| ((width >> level).max(1), (height >> level).max(1)))
+    (0..levels(width, height)).map(move |level| ((width >> level).max(1), (height >> level).max(1)))
 }
 
-/// Appends all levels of an image to `texels`; returns how many there are. `pixels`: RGBA8, row by row,
-/// `width * height * 4` bytes.
-pub fn append(texels: &mut Vec<u32>, pixels: &[u8], width: u32, height: u32, srgb: bool) -> u32 {
-    texels.extend(pixels.chunks_exact(4).map(|p| u32::from_le_bytes([p[0], p[1], p[2], p[3]])));
+/// How many levels an image of this size has.
+pub fn levels(width: u32, height: u32) -> u32 {
+    width.max(height).max(1).ilog2() + 1
+}
+
+/// Makes all levels from level 0, with which `texels` begins; it has [`words`] of them.
+pub fn fill_levels(texels: &mut [u32], width: u32, height: u32, srgb: bool) {
     let decode = decoder(srgb);
-    let mut levels = sizes(width, height);
-    let Some(mut size) = levels.next() else { return 0 };
-    let mut count = 1;
+    let mut sizes = sizes(width, height);
+    let Some(mut size) = sizes.next() else { return };
+    let (finest, mut rest) = texels.split_at_mut(size.0 as usize * size.1 as usize);
     let mut level: Vec<Vec4> = Vec::new();
-    for next in levels {
-        level = if count == 1 {
+    for (number, next) in sizes.enumerate() {
+        level = if number == 0 {
             shrink(size, next, |i| {
-                let p = &pixels[i * 4..i * 4 + 4];
-                let [r, g, b] = [p[0], p[1], p[2]].map(|c| decode[usize::from(c)]);
-                Vec4::new(r, g, b, f32::from(p[3]) / 255.0)
+                let [r, g, b, a] = finest[i].to_le_bytes();
+                let [r, g, b] = [r, g, b].map(|c| decode[usize::from(c)]);
+                Vec4::new(r, g, b, f32::from(a) / 255.0)
             })
         } else {
             shrink(size, next, |i| level[i])
         };
-        texels.extend(level.iter().map(|texel| encode(*texel, srgb)));
+        let (coded, coarser) = std::mem::take(&mut rest).split_at_mut(level.len());
+        coded.iter_mut().zip(&level).for_each(|(coded, texel)| *coded = encode(*texel, srgb));
+        rest = coarser;
         size = next;
-        count += 1;
     }
-    count
 }
 
 fn decoder(srgb: bool) -> [f32; 256] {

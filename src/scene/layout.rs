@@ -5,7 +5,8 @@
 //! `pad` have no counterpart in WGSL: they are the space it leaves.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, UVec4, Vec3, Vec4};
+use glam::{Mat4, UVec4, Vec2, Vec3, Vec4};
+use half::f16;
 use std::mem::{offset_of, size_of};
 
 /// A corner of triangles, in object space. `normal` has unit length.
@@ -16,6 +17,34 @@ pub struct Vertex {
     pub u: f32,
     pub normal: Vec3,
     pub v: f32,
+}
+
+/// What only some scenes' corners have; the extra of a vertex has the vertex's index.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct VertexExtra {
+    /// xyz: where texture coordinates of the normal map grow along u, in object space, of unit length; zero where the
+    /// surface has no map. w: 1 or −1, the bitangent is `w * cross(normal, tangent)`.
+    pub tangent: Vec4,
+    /// Four `f16`: red and green, blue and alpha, the first in the lower half. Multiplies the base colour.
+    pub color: [u32; 2],
+    /// The second set of texture coordinates.
+    pub uv: Vec2,
+}
+
+impl VertexExtra {
+    /// Of a vertex that needs none.
+    pub const NONE: Self = Self { tangent: Vec4::ZERO, color: [0x3c00_3c00; 2], uv: Vec2::ZERO };
+
+    pub fn pack_color(color: [f32; 4]) -> [u32; 2] {
+        let [r, g, b, a] = color.map(|c| u32::from(f16::from_f32(c).to_bits()));
+        [r | g << 16, b | a << 16]
+    }
+
+    pub fn unpacked_color(&self) -> [f32; 4] {
+        let [rg, ba] = self.color;
+        [rg, rg >> 16, ba, ba >> 16].map(|bits| f16::from_bits(bits as u16).to_f32())
+    }
 }
 
 /// Three indices into the vertices and one into the instances.
@@ -43,7 +72,8 @@ pub struct Instance {
     pub pad: [u32; 2],
 }
 
-/// A surface. An image reference is what [`super::Image::reference`] makes; width 0 stands for none.
+/// A surface. An image reference is what [`super::Image::reference`] makes; width 0 stands for none. A `…_uv` is the
+/// `mat3x2f` that takes (u, v, 1) of a vertex to the image's own coordinates, where the reference says that there is one.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct Material {
@@ -57,9 +87,19 @@ pub struct Material {
     pub flags: u32,
     pub base_color_image: UVec4,
     pub emission_image: UVec4,
+    /// Normals in the space of tangent, bitangent and normal; not sRGB-coded.
+    pub normal_image: UVec4,
+    /// Green multiplies `roughness`, blue `metallic`; not sRGB-coded.
+    pub roughness_image: UVec4,
+    pub base_color_uv: [Vec2; 3],
+    pub emission_uv: [Vec2; 3],
+    pub normal_uv: [Vec2; 3],
+    pub roughness_uv: [Vec2; 3],
     pub metallic: f32,
     pub roughness: f32,
-    pub pad: [u32; 2],
+    /// Multiplies x and y of the normals in the image.
+    pub normal_scale: f32,
+    pub pad: u32,
 }
 
 pub const DOUBLE_SIDED: u32 = 1;
@@ -135,8 +175,12 @@ pub struct CameraUniform {
 pub enum FieldKind {
     F32,
     U32,
+    Vec2F,
+    Vec2U,
     Vec3F,
+    Vec4F,
     Vec4U,
+    Mat3x2F,
     Mat3x3F,
     Mat4x3F,
     Mat4x4F,
@@ -147,8 +191,10 @@ impl FieldKind {
     pub fn size(self) -> u32 {
         match self {
             FieldKind::F32 | FieldKind::U32 => 4,
+            FieldKind::Vec2F | FieldKind::Vec2U => 8,
             FieldKind::Vec3F => 12,
-            FieldKind::Vec4U => 16,
+            FieldKind::Vec4F | FieldKind::Vec4U => 16,
+            FieldKind::Mat3x2F => 24,
             FieldKind::Mat3x3F => 48,
             FieldKind::Mat4x3F | FieldKind::Mat4x4F => 64,
         }
@@ -158,8 +204,12 @@ impl FieldKind {
         match self {
             FieldKind::F32 => "f32",
             FieldKind::U32 => "u32",
+            FieldKind::Vec2F => "vec2f",
+            FieldKind::Vec2U => "vec2u",
             FieldKind::Vec3F => "vec3f",
+            FieldKind::Vec4F => "vec4f",
             FieldKind::Vec4U => "vec4u",
+            FieldKind::Mat3x2F => "mat3x2f",
             FieldKind::Mat3x3F => "mat3x3f",
             FieldKind::Mat4x3F => "mat4x3f",
             FieldKind::Mat4x4F => "mat4x4f",
@@ -201,13 +251,17 @@ macro_rules! layout_of {
 
 static VERTEX: StructLayout =
     layout_of!(Vertex as "Vertex" { position: Vec3F, u: F32, normal: Vec3F, v: F32 });
+static VERTEX_EXTRA: StructLayout =
+    layout_of!(VertexExtra as "VertexExtra" { tangent: Vec4F, color: Vec2U, uv: Vec2F });
 static TRIANGLE: StructLayout = layout_of!(Triangle as "Triangle" { a: U32, b: U32, c: U32, instance: U32 });
 static INSTANCE: StructLayout = layout_of!(Instance as "Instance" {
     to_world: Mat4x3F, normal_to_world: Mat3x3F, material: U32, flip: F32
 });
 static MATERIAL: StructLayout = layout_of!(Material as "Material" {
     base_color: Vec3F, alpha_cutoff: F32, emission: Vec3F, flags: U32, base_color_image: Vec4U,
-    emission_image: Vec4U, metallic: F32, roughness: F32
+    emission_image: Vec4U, normal_image: Vec4U, roughness_image: Vec4U, base_color_uv: Mat3x2F,
+    emission_uv: Mat3x2F, normal_uv: Mat3x2F, roughness_uv: Mat3x2F, metallic: F32, roughness: F32,
+    normal_scale: F32
 });
 static LIGHT: StructLayout = layout_of!(Light as "Light" {
     position: Vec3F, kind: U32, direction: Vec3F, first_view: U32, intensity: Vec3F, cos_outer: F32,
@@ -228,6 +282,7 @@ static TEXEL: StructLayout = StructLayout { name: "u32", stride: 4, fields: &[] 
 pub fn layout(name: &str) -> Option<&'static StructLayout> {
     Some(match name {
         "vertices" => &VERTEX,
+        "vertex_extras" => &VERTEX_EXTRA,
         "triangles" => &TRIANGLE,
         "instances" => &INSTANCE,
         "materials" => &MATERIAL,

@@ -39,7 +39,7 @@ pub use camera::Camera;
 pub use image::Image;
 
 use crate::problem::{Problem, Result};
-use layout::{Instance, Light, Material, Triangle, Vertex, View};
+use layout::{Instance, Light, Material, Triangle, Vertex, VertexExtra, View};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -54,6 +54,8 @@ pub struct Scene {
     /// All files that were read; the scene changes only if one of them does.
     pub files: Vec<PathBuf>,
     pub vertices: Vec<Vertex>,
+    /// As many as vertices, or none where no vertex needs any.
+    pub vertex_extras: Vec<VertexExtra>,
     pub triangles: Vec<Triangle>,
     pub instances: Vec<Instance>,
     pub materials: Vec<Material>,

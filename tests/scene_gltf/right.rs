@@ -178,7 +178,7 @@ fn textures_that_are_used() {
     document["materials"] = json!([
         {
             "pbrMetallicRoughness": {"baseColorTexture": {"index": 1}},
-            "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 2}, "normalTexture": {"index": 0},
+            "emissiveFactor": [1, 1, 1], "emissiveTexture": {"index": 2}, "occlusionTexture": {"index": 0},
         },
         {"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}},
     ]);
@@ -193,7 +193,10 @@ fn textures_that_are_used() {
     assert_eq!(scene.materials[0].emission_image, UVec4::new(0, 2, 1, srgb | levels | sampler));
     assert_eq!(
         lacks(&scene),
-        ["1 texture coordinate that is not finite is set to 0", "1 normal map is left out"]
+        [
+            "1 texture coordinate that is not finite is set to 0",
+            "1 occlusion texture is not applied: occlusion is simulated"
+        ]
     );
     assert_eq!((scene.vertices[1].u, scene.vertices[2].v), (1.0, 0.0));
 }
@@ -239,6 +242,7 @@ fn what_is_lacking_is_said() {
     let positions = document["accessors"][0].clone();
     document["accessors"] = json!([positions, positions]);
     document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(1);
+    document["meshes"][0]["primitives"][0]["attributes"]["COLOR_1"] = json!(1);
     document["meshes"][0]["primitives"][0]["targets"] = json!([{"POSITION": 0}]);
     document["meshes"][0]["primitives"][0]["material"] = json!(0);
     let glass = json!({"extensions": {"KHR_materials_transmission": {}, "KHR_materials_sheen": {}}, "alphaMode": "BLEND"});
@@ -259,7 +263,7 @@ fn what_is_lacking_is_said() {
             "1 animation is not played",
             "1 primitive of points or lines is left out",
             "2 morphed primitives are drawn at rest",
-            "2 sets of vertex colours are left out",
+            "2 second sets of vertex colours are left out",
             "2 translucent materials are rendered opaque",
             "2 transmissive materials are rendered opaque",
             "2 uses of KHR_materials_sheen are left out",

@@ -23,35 +23,19 @@ pub fn floats<const N: usize>(file: &File, index: Index<Accessor>) -> Result<Vec
     let decode = decoder(kind, accessor.normalized);
     let size = kind.size();
     let element = |bytes: &[u8]| std::array::from_fn(|i| decode(&bytes[i * size..(i + 1) * size]));
-    let mut list = match accessor.buffer_view {
-        Some(view) => {
-            let offset = accessor.byte_offset.unwrap_or_default().0;
-            Strided::new(file, view, offset, size * N, accessor.count.0)?.iter().map(element).collect()
+    elements(file, index, accessor, size * N, [0.0; N], element)
+}
+
+/// The elements of an accessor of colours with or without alpha, which is 1 then.
+pub fn colors(file: &File, index: Index<Accessor>) -> Result<Vec<[f32; 4]>, Fault> {
+    let accessor = get(file, index)?;
+    expect(index, accessor, &[Type::Vec3, Type::Vec4])?;
+    match accessor.type_ {
+        Checked::Valid(Type::Vec3) => {
+            Ok(floats::<3>(file, index)?.into_iter().map(|[r, g, b]| [r, g, b, 1.0]).collect())
         }
-        None => vec![[0.0; N]; count(accessor.count.0)?],
-    };
-    if let Some(sparse) = &accessor.sparse {
-        let IndexComponentType(index_kind) = valid(&sparse.indices.component_type, index, "componentType")?;
-        let places = &sparse.indices;
-        let places = Strided::packed(
-            file,
-            places.buffer_view,
-            places.byte_offset.0,
-            index_kind.size(),
-            sparse.count.0,
-        )?;
-        let values = &sparse.values;
-        let values =
-            Strided::packed(file, values.buffer_view, values.byte_offset.0, size * N, sparse.count.0)?;
-        for (place, value) in places.iter().zip(values.iter()) {
-            let place = unsigned(place) as usize;
-            let length = list.len();
-            let slot =
-                list.get_mut(place).ok_or_else(|| Fault::beyond("(as sparse) element", place, length))?;
-            *slot = element(value);
-        }
+        _ => floats::<4>(file, index),
     }
-    Ok(list)
 }
 
 /// The elements of an accessor of unsigned integers.
@@ -63,13 +47,41 @@ pub fn indices(file: &File, index: Index<Accessor>) -> Result<Vec<u32>, Fault> {
         let message = format!("accessor {} holds {kind:?}; indices are U8, U16 or U32", index.value());
         return Err(Fault::new("gltf-accessor", message));
     }
-    if accessor.sparse.is_some() {
-        let message = format!("accessor {} has sparse indices, which are not read", index.value());
-        return Err(Fault::new("gltf-accessor", message));
+    elements(file, index, accessor, kind.size(), 0, unsigned)
+}
+
+/// All elements of an accessor, `size` bytes each, as `element` reads them: from its buffer view, or else `zero`s, and
+/// then those that its sparse part gives anew.
+fn elements<T: Copy>(
+    file: &File,
+    index: Index<Accessor>,
+    accessor: &Accessor,
+    size: usize,
+    zero: T,
+    element: impl Fn(&[u8]) -> T,
+) -> Result<Vec<T>, Fault> {
+    let mut list: Vec<T> = match accessor.buffer_view {
+        Some(view) => {
+            let offset = accessor.byte_offset.unwrap_or_default().0;
+            Strided::new(file, view, offset, size, accessor.count.0)?.iter().map(&element).collect()
+        }
+        None => vec![zero; count(accessor.count.0)?],
+    };
+    if let Some(sparse) = &accessor.sparse {
+        let IndexComponentType(kind) = valid(&sparse.indices.component_type, index, "componentType")?;
+        let (places, values) = (&sparse.indices, &sparse.values);
+        let (first, number) = (places.byte_offset.0, sparse.count.0);
+        let places = Strided::packed(file, places.buffer_view, first, kind.size(), number)?;
+        let values = Strided::packed(file, values.buffer_view, values.byte_offset.0, size, number)?;
+        for (place, value) in places.iter().zip(values.iter()) {
+            let place = unsigned(place) as usize;
+            let length = list.len();
+            let slot =
+                list.get_mut(place).ok_or_else(|| Fault::beyond("(as sparse) element", place, length))?;
+            *slot = element(value);
+        }
     }
-    let Some(view) = accessor.buffer_view else { return Ok(vec![0; count(accessor.count.0)?]) };
-    let offset = accessor.byte_offset.unwrap_or_default().0;
-    Ok(Strided::new(file, view, offset, kind.size(), accessor.count.0)?.iter().map(unsigned).collect())
+    Ok(list)
 }
 
 fn get(file: &File, index: Index<Accessor>) -> Result<&Accessor, Fault> {

@@ -1,6 +1,7 @@
 //! Materials, with their images where they are used.
 
 use super::file::File;
+use super::lookup::{IDENTITY, Lookup, Needs, Slot, lookups};
 use super::notes::{Fault, Notes};
 use super::texture::Textures;
 use crate::scene::layout::{DOUBLE_SIDED, Material, UNLIT};
@@ -17,9 +18,16 @@ pub fn default() -> Material {
         flags: 0,
         base_color_image: UVec4::ZERO,
         emission_image: UVec4::ZERO,
+        normal_image: UVec4::ZERO,
+        roughness_image: UVec4::ZERO,
+        base_color_uv: IDENTITY,
+        emission_uv: IDENTITY,
+        normal_uv: IDENTITY,
+        roughness_uv: IDENTITY,
         metallic: 1.0,
         roughness: 1.0,
-        pad: [0; 2],
+        normal_scale: 1.0,
+        pad: 0,
     }
 }
 
@@ -46,6 +54,11 @@ pub fn read(json: &Json, pointer: &str, notes: &mut Notes) -> Material {
             Fault::new("gltf-value", format!("the emissive strength {strength} is negative or not finite"));
         notes.fault(format_args!("{pointer}/extensions/KHR_materials_emissive_strength"), fault);
     }
+    let normal_scale = json.normal_texture.as_ref().map_or(1.0, |info| info.scale);
+    if !normal_scale.is_finite() {
+        let fault = Fault::new("gltf-value", "the scale is not finite");
+        notes.fault(format_args!("{pointer}/normalTexture/scale"), fault);
+    }
     if matches!(json.alpha_mode, Checked::Invalid) {
         notes.fault(format_args!("{pointer}/alphaMode"), Fault::new("gltf-value", "no such alpha mode"));
     }
@@ -57,6 +70,7 @@ pub fn read(json: &Json, pointer: &str, notes: &mut Notes) -> Material {
         flags: if json.double_sided { DOUBLE_SIDED } else { 0 } | if unlit { UNLIT } else { 0 },
         metallic,
         roughness,
+        normal_scale,
         ..default()
     }
 }
@@ -74,12 +88,6 @@ fn alpha_cutoff(json: &Json, factor: f32) -> f32 {
     }
 }
 
-/// The set of texture coordinates that the material needs, if any: that of its colour, or else of its emission.
-pub fn uv_set(json: &Json) -> Option<u32> {
-    let color = json.pbr_metallic_roughness.base_color_texture.as_ref();
-    color.or(json.emissive_texture.as_ref()).map(|info| info.tex_coord)
-}
-
 /// Fills in the images, and notes what the material has that isn't drawn. For materials in use only.
 pub fn finish(
     material: &mut Material,
@@ -89,36 +97,32 @@ pub fn finish(
     textures: &mut Textures,
     notes: &mut Notes,
 ) {
-    let uv_set = uv_set(json);
-    let surface = &json.pbr_metallic_roughness;
-    let color = surface.base_color_texture.as_ref();
-    let emission = json.emissive_texture.as_ref().filter(|_| material.emission != Vec3::ZERO);
-    for (info, field, image) in [
-        (color, "pbrMetallicRoughness/baseColorTexture", &mut material.base_color_image),
-        (emission, "emissiveTexture", &mut material.emission_image),
-    ] {
-        let Some(info) = info else { continue };
-        if Some(info.tex_coord) != uv_set {
-            notes.lack("texture with coordinates of its own", "left out");
+    let lookups = lookups(json);
+    let needs = Needs::of(&lookups);
+    for Lookup { slot, texture, set, transform } in lookups {
+        let pointer = format!("{pointer}/{}", slot.pointer());
+        let Some(place) = needs.place(set) else {
+            notes.lack("texture with a third set of coordinates in one material", "left out");
             continue;
-        }
-        if info.extensions.as_ref().is_some_and(|e| e.texture_transform.is_some()) {
-            notes.lack("texture transform", "left out");
-        }
-        let reference = textures.reference(file, info.index, notes);
-        let reference = notes.catch(format_args!("{pointer}/{field}"), reference).flatten();
-        *image = reference.unwrap_or_default();
+        };
+        let Some(transform) = notes.catch(&pointer, transform) else { continue };
+        let found = textures.request(file, texture, slot.coding(), &pointer, notes);
+        let Some((image, mut sampling)) = notes.catch(&pointer, found).flatten() else { continue };
+        (sampling.second_uv, sampling.transformed) = (place == 1, transform.is_some());
+        let (reference, uv) = match slot {
+            Slot::BaseColor => (&mut material.base_color_image, &mut material.base_color_uv),
+            Slot::Emission => (&mut material.emission_image, &mut material.emission_uv),
+            Slot::Normal => (&mut material.normal_image, &mut material.normal_uv),
+            Slot::Roughness => (&mut material.roughness_image, &mut material.roughness_uv),
+        };
+        *reference = textures.images[image].reference(sampling);
+        *uv = transform.unwrap_or(IDENTITY);
     }
     if matches!(json.alpha_mode, Checked::Valid(AlphaMode::Blend)) {
         notes.lack("translucent material", "rendered opaque");
     }
-    let maps = [
-        (json.normal_texture.is_some(), "normal map"),
-        (surface.metallic_roughness_texture.is_some(), "metallic-roughness texture"),
-        (json.occlusion_texture.is_some(), "occlusion texture"),
-    ];
-    for (_, what) in maps.iter().filter(|(there, _)| *there) {
-        notes.lack(what, "left out");
+    if json.occlusion_texture.is_some() {
+        notes.lack("occlusion texture", "not applied: occlusion is simulated");
     }
     for name in json.extensions.iter().flat_map(|e| e.others.keys()) {
         match name.as_str() {

@@ -1,8 +1,9 @@
 //! glTF 2.0, `.gltf` and `.glb`.
 //!
-//! Read are: meshes of triangles, strips and fans with positions, normals and one set of texture coordinates (plain,
-//! quantized or sparse accessors); node transforms; metallic-roughness materials with the images of colour and emission;
-//! alpha masks; punctual lights; perspective cameras. The rest that a file has is counted in [`Scene::lacks`].
+//! Read are: meshes of triangles, strips and fans with positions, normals, tangents, a set of colours and two sets of
+//! texture coordinates (plain, quantized or sparse accessors); node transforms; metallic-roughness materials with their
+//! images and texture transforms; alpha masks; punctual lights; perspective cameras. The rest that a file has is counted
+//! in [`Scene::lacks`].
 //!
 //! A file is never trusted: lengths, indices and numbers are checked where they are used, URIs stay in the file's
 //! own folder, and what a small file can blow up to has a limit. All faults that are found are reported, each with
@@ -12,24 +13,29 @@ mod accessor;
 mod budget;
 mod census;
 mod container;
+mod corners;
 mod file;
+mod lookup;
 mod material;
 mod mesh;
 mod nodes;
 mod notes;
 pub(super) mod outline;
+mod picture;
 mod punctual;
+mod tangents;
 mod texture;
 pub(super) mod uri;
+mod vertices;
 
 use super::Scene;
-use super::layout::{Instance, Triangle, Vertex};
+use super::layout::{Instance, Triangle};
 use crate::problem::Result;
 use file::File;
 pub(super) use file::read;
 use glam::{DMat3, DMat4, DVec3, Vec4};
-use gltf::json::mesh::{Mesh, Primitive, Semantic};
-use gltf::json::validation::Checked;
+use gltf::json::mesh::{Mesh, Primitive};
+use lookup::Needs;
 use mesh::Meshes;
 use nodes::Placed;
 use notes::{Fault, Notes};
@@ -70,7 +76,7 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
         builder.place(&placed);
     }
     let Builder { mut scene, used, meshes, .. } = builder;
-    scene.vertices = meshes.vertices;
+    (scene.vertices, scene.vertex_extras) = meshes.finish();
     let mut textures = Textures::default();
     let materials = std::mem::take(&mut file.root.materials);
     for (i, (json, material)) in materials.iter().zip(&mut scene.materials).enumerate() {
@@ -79,7 +85,8 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
             material::finish(material, json, &pointer, &mut file, &mut textures, &mut notes);
         }
     }
-    (scene.texels, scene.images, scene.files) = (textures.texels, textures.images, file.read);
+    (scene.images, scene.texels) = textures.decode(&file, &mut notes);
+    scene.files = file.read;
     match scene.world_bounds() {
         Some(bounds) => scene.bounds = bounds,
         None => notes.fault("/nodes", Fault::new("gltf-value", "the scene reaches farther than 10¹⁸ m")),
@@ -95,6 +102,8 @@ struct Builder<'a> {
     meshes: Meshes,
     /// For each material whether a primitive has it; the last one is the default material, which is not yet there.
     used: Vec<bool>,
+    /// What each of them takes from vertices.
+    needs: Vec<Needs>,
 }
 
 impl<'a> Builder<'a> {
@@ -106,8 +115,11 @@ impl<'a> Builder<'a> {
             notes.lack("animation", "not played");
         }
         let used = vec![false; materials.len() + 1];
+        let mut needs: Vec<Needs> =
+            root.materials.iter().map(|json| Needs::of(&lookup::lookups(json))).collect();
+        needs.push(Needs::default());
         let scene = Scene { name, materials, ..Scene::default() };
-        Self { file, notes, scene, meshes: Meshes::default(), used }
+        Self { file, notes, scene, meshes: Meshes::default(), used, needs }
     }
 
     /// Adds what a node carries.
@@ -147,29 +159,21 @@ impl<'a> Builder<'a> {
         primitive: &Primitive,
     ) -> Result<(), Fault> {
         self.file.budget.hold(size_of::<Instance>() as u64)?;
-        let materials = &self.file.root.materials;
-        let (material, uv_set) = match primitive.material.map(|material| material.value()) {
-            None => (materials.len(), None),
-            Some(index) => {
-                let json = materials.get(index);
-                let json = json.ok_or_else(|| Fault::beyond("material", index, materials.len()))?;
-                (index, material::uv_set(json))
-            }
+        let materials = self.file.root.materials.len();
+        let material = primitive.material.map_or(materials, |material| material.value());
+        let needs = match self.needs.get(material) {
+            Some(needs) if primitive.material.is_none() || material < materials => needs,
+            _ => return Err(Fault::beyond("material", material, materials)),
         };
-        let before = self.meshes.vertices.len();
-        let Some(corners) = self.meshes.part(self.file, mesh, at, uv_set, self.notes) else { return Ok(()) };
-        let vertices = (self.meshes.vertices.len() - before) * size_of::<Vertex>();
-        self.file.budget.hold((vertices + corners.len() * size_of::<Triangle>()) as u64)?;
+        let before = self.meshes.bytes();
+        let Some(corners) = self.meshes.part(self.file, mesh, at, needs, self.notes) else { return Ok(()) };
+        let new = self.meshes.bytes() - before + corners.len() * size_of::<Triangle>();
+        self.file.budget.hold(new as u64)?;
         if self.scene.triangles.len() + corners.len() > MOST_TRIANGLES {
             return Err(Fault::new(
                 "gltf-size",
                 format!("the scene has more than {MOST_TRIANGLES} triangles"),
             ));
-        }
-        for semantic in primitive.attributes.keys() {
-            if matches!(semantic, Checked::Valid(Semantic::Colors(_))) {
-                self.notes.lack("set of vertex colours", "left out");
-            }
         }
         if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
             self.notes.lack("morphed primitive", "drawn at rest");

@@ -1,39 +1,60 @@
-//! Textures: an image with the sampler it is looked up by. Each image is decoded once, and only if asked for.
+//! Textures: an image with the sampler it is looked up by.
+//!
+//! An image is decoded once, and only if a material in use asks for it; one that is asked for both as colour and as data
+//! is stored twice. Where it will lie is settled by its header, so that nothing is decoded that can't be held, and each
+//! image is decoded to its place: in parallel, and with the same result however many threads there are.
 
 use super::file::File;
 use super::notes::{Fault, Notes};
-use crate::scene::image::{Image, Sampling, Wrap, append, words};
-use glam::UVec4;
+use super::picture::{Header, decode};
+use crate::scene::image::{Image, Sampling, Wrap, fill_levels, levels, words};
 use gltf::json::texture::{MagFilter, Texture, WrappingMode};
 use gltf::json::validation::Checked;
 use gltf::json::{self, Index};
-use image::{ImageFormat, ImageReader, Limits};
+use rayon::prelude::*;
 use std::collections::HashMap;
-use std::io::Cursor;
 
-/// Longest side of an image in texels.
-const MOST_SIDE: u32 = 16384;
-/// Most memory that decoding one image may take.
-const MOST_BYTES: u64 = 1 << 30;
 /// Most texels of a scene with all mip levels: 1 GiB.
 const MOST_TEXELS: u64 = 1 << 28;
+/// Texels of the images that are decoded at a time, unless one alone has more.
+const MOST_AT_ONCE: u64 = 1 << 24;
+/// Bytes that decoding takes at most for each.
+const DECODING: u64 = 16;
+
+/// What the texels of an image are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Coding {
+    Srgb,
+    Linear,
+}
+
+/// An image of the file that was asked for.
+struct Source {
+    header: Header,
+    /// Where it was asked for first.
+    pointer: String,
+    /// In [`Textures::images`].
+    places: Vec<usize>,
+}
 
 #[derive(Default)]
 pub struct Textures {
-    pub texels: Vec<u32>,
     pub images: Vec<Image>,
-    /// Place in `images` of the file's images that were asked for; `None` for those we can't read.
-    decoded: HashMap<usize, Option<usize>>,
+    sources: Vec<Source>,
+    /// The file's images that were asked for, in `sources`; `None` for those we can't read.
+    asked: HashMap<usize, Option<usize>>,
 }
 
 impl Textures {
-    /// How a material refers to the texture `index`, whose image holds colour; `None` if it is left out.
-    pub fn reference(
+    /// The image of the texture `index`, as a place in `images`, and how it is looked up; `None` if it is left out.
+    pub fn request(
         &mut self,
         file: &mut File,
         index: Index<Texture>,
+        coding: Coding,
+        pointer: &str,
         notes: &mut Notes,
-    ) -> Result<Option<UVec4>, Fault> {
+    ) -> Result<Option<(usize, Sampling)>, Fault> {
         let root = &file.root;
         let texture = root
             .textures
@@ -44,65 +65,131 @@ impl Textures {
                 let (index, count) = (sampler.value(), root.samplers.len());
                 sampling(root.samplers.get(index).ok_or_else(|| Fault::beyond("sampler", index, count))?)?
             }
-            None => Sampling { wrap: [Wrap::Repeat; 2], nearest: false },
+            None => SAMPLING,
         };
-        let source = texture.source.value();
+        let number = texture.source.value();
         // What the JSON types give for a texture without an image of a kind that core glTF has.
-        if source == u32::MAX as usize {
+        if number == u32::MAX as usize {
             notes.lack("texture in a format of an extension", "left out");
             return Ok(None);
         }
-        let place = match self.decoded.get(&source) {
-            Some(place) => *place,
+        let source = match self.asked.get(&number) {
+            Some(source) => *source,
             None => {
-                let place = self.decode(file, source, notes)?;
-                self.decoded.insert(source, place);
-                place
+                let header = Header::read(file, number, notes)?;
+                let source = header.map(|header| {
+                    self.sources.push(Source { header, pointer: pointer.to_owned(), places: Vec::new() });
+                    self.sources.len() - 1
+                });
+                self.asked.insert(number, source);
+                source
             }
         };
-        Ok(place.and_then(|place| self.images.get(place)).map(|image| image.reference(sampling)))
+        source.map(|source| Ok((self.place(file, source, coding)?, sampling))).transpose()
     }
 
-    fn decode(&mut self, file: &mut File, index: usize, notes: &mut Notes) -> Result<Option<usize>, Fault> {
-        let count = file.root.images.len();
-        let image = file.root.images.get(index).ok_or_else(|| Fault::beyond("image", index, count))?;
-        let name = image.name.clone().unwrap_or_else(|| format!("image {index}"));
-        let fetched;
-        let data = match (image.buffer_view, image.uri.clone()) {
-            (Some(view), _) => file.whole(view)?,
-            (None, Some(uri)) => {
-                fetched = file.fetch(&uri)?;
-                &fetched
-            }
-            (None, None) => {
-                let message = format!("image {index} has neither a buffer view nor a URI");
-                return Err(Fault::new("gltf-image", message));
-            }
-        };
-        let fault = |error: &dyn std::fmt::Display| {
-            Fault::new("gltf-image", format!("can't decode image {index}: {error}"))
-        };
-        let format = image::guess_format(data).map_err(|error| fault(&error))?;
-        if !matches!(format, ImageFormat::Png | ImageFormat::Jpeg) {
-            notes.lack(&format!("{format:?} image"), "left out");
-            return Ok(None);
+    /// Where the source lies in `images`, as the given coding.
+    fn place(&mut self, file: &File, source: usize, coding: Coding) -> Result<usize, Fault> {
+        let source = &mut self.sources[source];
+        let srgb = coding == Coding::Srgb;
+        if let Some(place) = source.places.iter().find(|place| self.images[**place].srgb == srgb) {
+            return Ok(*place);
         }
-        let mut limits = Limits::default();
-        (limits.max_image_width, limits.max_image_height) = (Some(MOST_SIDE), Some(MOST_SIDE));
-        limits.max_alloc = Some(MOST_BYTES);
-        let mut reader = ImageReader::with_format(Cursor::new(data), format);
-        reader.limits(limits);
-        let pixels = reader.decode().map_err(|error| fault(&error))?.into_rgba8();
-        let (width, height) = pixels.dimensions();
-        let offset = self.texels.len() as u64;
-        if offset + words(width, height) > MOST_TEXELS {
-            let message = format!("with image {index} the scene has more than {MOST_TEXELS} texels");
+        let Header { name, width, height, .. } = &source.header;
+        let offset = self.images.last().map_or(0, end);
+        if offset + words(*width, *height) > MOST_TEXELS {
+            let message = format!("with image {name:?} the scene has more than {MOST_TEXELS} texels");
             return Err(Fault::new("gltf-size", message));
         }
-        let levels = append(&mut self.texels, pixels.as_raw(), width, height, true);
-        self.images.push(Image { name, offset: offset as u32, width, height, levels, srgb: true });
-        Ok(Some(self.images.len() - 1))
+        file.budget.hold(4 * words(*width, *height))?;
+        source.places.push(self.images.len());
+        self.images.push(Image {
+            name: name.clone(),
+            offset: offset as u32,
+            width: *width,
+            height: *height,
+            levels: levels(*width, *height),
+            srgb,
+            least: [255; 4],
+            greatest: [0; 4],
+        });
+        Ok(self.images.len() - 1)
     }
+
+    /// Decodes what was asked for: the images, and all their texels.
+    pub fn decode(mut self, file: &File, notes: &mut Notes) -> (Vec<Image>, Vec<u32>) {
+        let sizes = || self.sources.iter().map(|s| u64::from(s.header.width) * u64::from(s.header.height));
+        let at_once = sizes().max().unwrap_or(0).max(sizes().sum::<u64>().min(MOST_AT_ONCE));
+        if let Err(fault) = file.budget.pass(at_once * DECODING) {
+            notes.fault("/images", fault);
+            return Default::default();
+        }
+        let mut texels = vec![0; self.images.last().map_or(0, end) as usize];
+        let mut rest = texels.as_mut_slice();
+        let mut targets = Vec::with_capacity(self.images.len());
+        for image in &mut self.images {
+            let (own, others) =
+                std::mem::take(&mut rest).split_at_mut(words(image.width, image.height) as usize);
+            targets.push(Some(Target { image, texels: own }));
+            rest = others;
+        }
+        let mut jobs = Vec::with_capacity(self.sources.len());
+        for source in self.sources {
+            let own: Vec<Target> = source.places.iter().filter_map(|place| targets[*place].take()).collect();
+            jobs.push((source.header, source.pointer, own));
+        }
+        let mut jobs = jobs.as_mut_slice();
+        while !jobs.is_empty() {
+            let mut total = 0;
+            let several = jobs.iter().take_while(|(header, ..)| {
+                total += u64::from(header.width) * u64::from(header.height);
+                total <= MOST_AT_ONCE
+            });
+            let count = several.count().max(1);
+            let (now, later) = std::mem::take(&mut jobs).split_at_mut(count);
+            let results: Vec<_> =
+                now.par_iter_mut().map(|(header, _, targets)| load(file, header, targets)).collect();
+            for ((_, pointer, _), result) in now.iter().zip(results) {
+                notes.catch(pointer, result);
+            }
+            jobs = later;
+        }
+        (self.images, texels)
+    }
+}
+
+const SAMPLING: Sampling =
+    Sampling { wrap: [Wrap::Repeat; 2], nearest: false, second_uv: false, transformed: false };
+
+/// Index of the texel after the image's last.
+fn end(image: &Image) -> u64 {
+    u64::from(image.offset) + words(image.width, image.height)
+}
+
+/// An image, and its own part of the scene's texels.
+struct Target<'a> {
+    image: &'a mut Image,
+    texels: &'a mut [u32],
+}
+
+fn load(file: &File, header: &Header, targets: &mut [Target]) -> Result<(), Fault> {
+    let (width, height) = (header.width, header.height);
+    let finest = width as usize * height as usize;
+    let Some((first, others)) = targets.split_first_mut() else { return Ok(()) };
+    decode(file, header, &mut first.texels[..finest])?;
+    for other in others.iter_mut() {
+        other.texels[..finest].copy_from_slice(&first.texels[..finest]);
+    }
+    for Target { image, texels } in std::iter::once(first).chain(others) {
+        for texel in texels[..finest].iter().map(|texel| texel.to_le_bytes()) {
+            for (channel, value) in texel.into_iter().enumerate() {
+                image.least[channel] = image.least[channel].min(value);
+                image.greatest[channel] = image.greatest[channel].max(value);
+            }
+        }
+        fill_levels(texels, width, height, image.srgb);
+    }
+    Ok(())
 }
 
 fn sampling(sampler: &json::texture::Sampler) -> Result<Sampling, Fault> {
@@ -117,5 +204,6 @@ fn sampling(sampler: &json::texture::Sampler) -> Result<Sampling, Fault> {
     Ok(Sampling {
         wrap: [wrap(sampler.wrap_s)?, wrap(sampler.wrap_t)?],
         nearest: sampler.mag_filter == Some(Checked::Valid(MagFilter::Nearest)),
+        ..SAMPLING
     })
 }

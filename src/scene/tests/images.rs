@@ -1,14 +1,14 @@
-use crate::scene::image::{Image, Sampling, Wrap, append, words};
+use crate::scene::image::{self, Image, Sampling, Wrap, fill_levels, words};
 use glam::UVec4;
 use proptest::prelude::*;
 
 /// Texels of all levels as bytes.
 fn levels(pixels: &[u8], width: u32, height: u32, srgb: bool) -> (u32, Vec<[u8; 4]>) {
-    let mut texels = vec![7];
-    let count = append(&mut texels, pixels, width, height, srgb);
-    assert_eq!(texels[0], 7, "what was there stays");
-    assert_eq!(texels.len() as u64 - 1, words(width, height));
-    (count, texels[1..].iter().map(|texel| texel.to_le_bytes()).collect())
+    let mut texels: Vec<u32> =
+        pixels.chunks_exact(4).map(|p| u32::from_le_bytes([p[0], p[1], p[2], p[3]])).collect();
+    texels.resize(words(width, height) as usize, 7);
+    fill_levels(&mut texels, width, height, srgb);
+    (image::levels(width, height), texels.iter().map(|texel| texel.to_le_bytes()).collect())
 }
 
 fn grey(values: &[u8]) -> Vec<u8> {
@@ -45,9 +45,23 @@ fn colour_is_averaged_as_light_and_alpha_as_it_is() {
 
 #[test]
 fn references_are_packed_as_documented() {
-    let image = Image { name: String::new(), offset: 5, width: 6, height: 7, levels: 3, srgb: true };
-    let sampling = Sampling { wrap: [Wrap::Clamp, Wrap::Mirror], nearest: true };
-    assert_eq!(image.reference(sampling), UVec4::new(5, 6, 7, 0b1 | 0b10 << 2 | 1 << 4 | 1 << 5 | 3 << 8));
+    let [least, greatest] = [[0; 4], [255; 4]];
+    let image =
+        Image { name: String::new(), offset: 5, width: 6, height: 7, levels: 3, srgb: true, least, greatest };
+    let mut sampling =
+        Sampling { wrap: [Wrap::Clamp, Wrap::Mirror], nearest: true, second_uv: false, transformed: false };
+    let bits = 0b1 | 0b10 << 2 | 1 << 4 | 1 << 5 | 3 << 8;
+    assert_eq!(image.reference(sampling), UVec4::new(5, 6, 7, bits));
+    (sampling.second_uv, sampling.transformed) = (true, true);
+    assert_eq!(image.reference(sampling), UVec4::new(5, 6, 7, bits | 1 << 6 | 1 << 7));
+}
+
+/// As many vectors this way as that: nothing is left but what they share.
+#[test]
+fn normals_are_averaged_as_vectors() {
+    let [left, right] = [[27, 128, 206, 255], [228, 128, 206, 255]];
+    let (_, texels) = levels(&[left, right].concat(), 2, 1, false);
+    assert_eq!(texels[2], [128, 128, 206, 255]);
 }
 
 proptest! {

@@ -1,15 +1,18 @@
 //! The tables against naga's own layout of the WGSL that they stand for.
 
-use crate::scene::layout::{FieldKind, layout};
+use crate::scene::layout::{FieldKind, VertexExtra, layout};
 use crate::scene::{Scene, buffers, features};
 
 const WGSL: &str = "
     struct Vertex { position: vec3f, u: f32, normal: vec3f, v: f32 }
+    struct VertexExtra { tangent: vec4f, color: vec2u, uv: vec2f }
     struct Triangle { a: u32, b: u32, c: u32, instance: u32 }
     struct Instance { to_world: mat4x3f, normal_to_world: mat3x3f, material: u32, flip: f32 }
     struct Material {
         base_color: vec3f, alpha_cutoff: f32, emission: vec3f, flags: u32,
-        base_color_image: vec4u, emission_image: vec4u, metallic: f32, roughness: f32,
+        base_color_image: vec4u, emission_image: vec4u, normal_image: vec4u, roughness_image: vec4u,
+        base_color_uv: mat3x2f, emission_uv: mat3x2f, normal_uv: mat3x2f, roughness_uv: mat3x2f,
+        metallic: f32, roughness: f32, normal_scale: f32,
     }
     struct Light {
         position: vec3f, kind: u32, direction: vec3f, first_view: u32, intensity: vec3f, cos_outer: f32,
@@ -45,14 +48,14 @@ fn tables_are_what_wgsl_lays_out() {
         assert_eq!(ours, theirs, "{name}");
         found += 1;
     }
-    assert_eq!(found, 7);
+    assert_eq!(found, 8);
 }
 
 /// Each kind's WGSL name means a type of its size.
 #[test]
 fn kinds_are_named_as_wgsl_names_them() {
     use FieldKind::*;
-    for kind in [F32, U32, Vec3F, Vec4U, Mat3x3F, Mat4x3F, Mat4x4F] {
+    for kind in [F32, U32, Vec2F, Vec2U, Vec3F, Vec4F, Vec4U, Mat3x2F, Mat3x3F, Mat4x3F, Mat4x4F] {
         let module = naga::front::wgsl::parse_str(&format!("struct S {{ field: {} }}", kind.wgsl())).unwrap();
         let member = module.types.iter().find_map(|(_, ty)| match &ty.inner {
             naga::TypeInner::Struct { members, .. } => Some(members[0].ty),
@@ -80,7 +83,17 @@ fn features_are_those_that_are_named() {
     let named: Vec<_> = features::NAMES.iter().map(|feature| (feature.name, feature.kind)).collect();
     assert_eq!(kinds, named);
     let wanted = "scene.triangles scene.vertices scene.materials scene.instances scene.min scene.max \
-        scene.emissive scene.max_emission scene.textured scene.masked scene.double_sided scene.min_roughness scene.max_metallic \
+        scene.emissive scene.max_emission scene.textured scene.roughness_textured scene.normal_mapped scene.second_uv \
+        scene.vertex_colors scene.vertex_extras scene.masked scene.double_sided scene.min_roughness scene.max_metallic \
         scene.moving lights.point lights.spot lights.directional lights.total views.total cameras.total";
     assert_eq!(named.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" "), wanted);
+}
+
+#[test]
+fn colours_are_packed_as_kernels_unpack_them() {
+    // unpack2x16float takes the lower half first.
+    assert_eq!(VertexExtra::pack_color([1.0, 0.5, 0.25, 2.0]), [0x3800_3c00, 0x4000_3400]);
+    let extra = VertexExtra { color: VertexExtra::pack_color([0.0, 0.125, 1.0, 0.75]), ..VertexExtra::NONE };
+    assert_eq!(extra.unpacked_color(), [0.0, 0.125, 1.0, 0.75]);
+    assert_eq!(VertexExtra::NONE.unpacked_color(), [1.0; 4]);
 }
