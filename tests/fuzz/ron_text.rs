@@ -89,7 +89,10 @@ impl Corpus {
                 match dice.usize(..3) {
                     0 => text.replace_range(group, ""),
                     1 => text.insert_str(group.end, &format!(", {copy}")),
-                    _ => text.replace_range(group, &copy[..1].repeat(dice.usize(1..300))),
+                    _ => {
+                        let times = if dice.usize(..20) == 0 { 100_000 } else { dice.usize(1..300) };
+                        text.replace_range(group, &copy[..1].repeat(times));
+                    }
                 }
             }
             10 => {

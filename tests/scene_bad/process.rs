@@ -45,7 +45,7 @@ impl Outcome {
             assert!(self.json.to_string().contains(&*file), "{name} is not named: {message}");
             // What is no document has no places in it.
             let whole = ["gltf-container", "gltf-json", "gltf-version", "scene-file", "setting"];
-            let place = message.contains(" at /") || message.contains("at line ");
+            let place = message.contains(" at /") || self.json.to_string().contains("\"line\"");
             assert!(
                 place || whole.contains(&&**code) || message.contains("the whole document"),
                 "{name}: {message}"

@@ -12,7 +12,7 @@ const LEAST: u64 = 768 << 20;
 /// How much larger than what was read a scene may be in memory.
 const TIMES: u64 = 32;
 /// How often the whole budget may pass through memory.
-const PASSES: u64 = 128;
+const PASSES: u64 = 32;
 
 #[derive(Default)]
 pub struct Budget {
