@@ -134,6 +134,8 @@ fn texts_that_are_hardly_json() {
     let text =
         format!(r#"{{"asset": {{"version": "2.0"}}, "extensionsRequired": ["{}"]}}"#, "x".repeat(10 << 20));
     content("a long extension", "a.gltf", text.as_bytes(), &[], &Refused("gltf-extension", "…"));
+    let long = with("/buffers/0/uri", json!("x/".repeat(5000)));
+    document("a long file name", &long, &[], &Refused("gltf-file", "…"));
     content("only rubbish", "a.glb", &[0x67; 1 << 20], &[], &Refused("gltf-json", ""));
 }
 
