@@ -4,7 +4,8 @@
 
 use crate::device::Gpu;
 use crate::frame::{Clock, Frame, Times};
-use crate::graph::facts;
+use crate::graph::{Graph, facts};
+use crate::scene::Scene;
 use crate::schedule::{Fate, Step};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -81,9 +82,27 @@ pub struct StageRecord {
     pub spread: Spread,
     pub first_use_ms: Option<f64>,
     pub samples_ms: Vec<Option<f64>>,
+    /// What it takes where it is not kept or dropped, if that was measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub saved_ms: Option<f64>,
     /// Why its result depends on thread order, if it does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub order_dependent: Option<String>,
+    #[serde(flatten)]
+    pub profile: Option<StageProfile>,
+}
+
+/// What only a profile says of a stage that is in the schedule.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct StageProfile {
+    /// Of the frame's median.
+    pub share: Option<f64>,
+    /// What the stage binds, once: see [`crate::profile::traffic`].
+    pub read_bytes: Option<u64>,
+    pub written_bytes: Option<u64>,
+    /// Both together in the median time, in 10⁹ bytes a second, and as a part of the device's copy speed.
+    pub gb_per_s: Option<f64>,
+    pub of_copy: Option<f64>,
 }
 
 /// Tenth and ninetieth percentile.
@@ -149,7 +168,9 @@ pub fn stages(frame: &Frame, samples: &Samples) -> Vec<StageRecord> {
             spread: Spread::default(),
             first_use_ms: None,
             samples_ms: Vec::new(),
+            saved_ms: None,
             order_dependent: stage.order_dependent.clone(),
+            profile: None,
         };
         match &frame.schedule.fates[index] {
             Fate::Dropped(reason) => record.reason = Some(reason.clone()),
@@ -171,6 +192,12 @@ pub fn stages(frame: &Frame, samples: &Samples) -> Vec<StageRecord> {
         record
     };
     frame.graph.stages.iter().enumerate().map(record).collect()
+}
+
+/// What the scene calls for and is not done: by the loader, and by the pipeline.
+pub fn lacks(scene: &Scene, graph: &Graph) -> Vec<String> {
+    let pipeline = graph.plan.lacks.iter().filter(|lack| lack.unknown.is_none());
+    scene.lacks.iter().map(ToString::to_string).chain(pipeline.map(|lack| lack.what.clone())).collect()
 }
 
 fn kept_reason(frame: &Frame, step: usize) -> String {

@@ -9,8 +9,9 @@ use crate::graph::{self, Graph, Linking};
 use crate::kernel::Variants;
 use crate::library::Library;
 use crate::plan;
+use crate::play;
 use crate::problem::{Problem, Problems, Result};
-use crate::scene::{self, Scene, features};
+use crate::scene::{self, Bounds, Camera, Scene, features};
 use crate::schedule::{self, Schedule, schedule};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
@@ -104,7 +105,7 @@ pub fn prepare(request: &Request, library: &Library, scene: Option<&Scene>) -> R
         reuse: request.reuse,
         drop: request.drop,
         keep: request.keep,
-        varying: request.varying.clone(),
+        varying: with_values(&graph.plan, &request.varying),
     };
     let work = graph::work::work(&graph);
     let scheduled = |options: &schedule::Options| {
@@ -127,6 +128,17 @@ pub fn prepare(request: &Request, library: &Library, scene: Option<&Scene>) -> R
         camera: request.camera,
         warnings,
     })
+}
+
+/// What may change, and with it the values that depend on it.
+fn with_values(plan: &plan::Plan, varying: &BTreeSet<u32>) -> BTreeSet<u32> {
+    let mut all = varying.clone();
+    for (index, value) in plan.values.iter().enumerate() {
+        if value.causes.iter().any(|cause| varying.contains(&graph::facts::bit(*cause))) {
+            all.insert(graph::facts::value_bit(index));
+        }
+    }
+    all
 }
 
 fn reruns(schedule: &Schedule) -> Vec<BTreeSet<u32>> {
@@ -193,9 +205,8 @@ fn facts(request: &Request, scene: Option<&Scene>) -> BTreeMap<String, Value> {
         facts.insert(name.to_owned(), value);
     }
     let camera = scene.and_then(|s| s.cameras.get(request.camera));
-    let vector = |v: Option<glam::DVec3>| v.map_or(Value::Unknown, |v| Value::Vector(v.to_array().to_vec()));
-    facts.insert("camera.position".to_owned(), vector(camera.map(|c| c.position)));
-    facts.insert("camera.forward".to_owned(), vector(camera.map(|c| c.forward)));
+    let seen = play::features(camera.unwrap_or(&Camera::framing(&Bounds::default())));
+    facts.extend(seen.into_iter().map(|(name, value)| (name, camera.map_or(Value::Unknown, |_| value))));
     facts
 }
 
@@ -217,23 +228,16 @@ impl Prepared {
         }
         table.put_views(&scene.views);
         for (index, value) in graph.plan.values.iter().enumerate() {
-            match &value.value {
-                Value::Number(number) => table.put_value(index, 0, *number),
-                Value::Flag(flag) => table.put_value(index, 0, f64::from(u8::from(*flag))),
-                Value::Vector(numbers) => {
-                    numbers.iter().enumerate().for_each(|(i, number)| table.put_value(index, i, *number));
-                }
-                Value::Text(_) => {}
-                Value::Unknown => {
-                    return Err(Problem::input(
-                        "unknown-value",
-                        format!("the value `{}` depends on what changes within a run", value.path),
-                    )
-                    .at(&value.place, "declared here")
-                    .help("read the uniform `frame` in the kernel instead")
-                    .into());
-                }
+            if value.value == Value::Unknown {
+                return Err(Problem::input(
+                    "unknown-value",
+                    format!("the value `{}` depends on what changes within a run", value.path),
+                )
+                .at(&value.place, "declared here")
+                .help("read the uniform `frame` in the kernel instead")
+                .into());
             }
+            table.put_value(index, &value.value);
         }
         Ok(frame)
     }

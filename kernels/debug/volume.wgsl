@@ -48,9 +48,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let scale = 1.0 / f32(1u << level);
     let ray = pixel_ray(id.xy, size);
     // No component is zero, so that no division is by zero.
-    let direction = select(ray, vec3f(1e-9), abs(ray) < vec3f(1e-9));
+    let direction = select(ray.direction, vec3f(1e-9), abs(ray.direction) < vec3f(1e-9));
     let inverse = 1.0 / direction;
-    let origin = to_grid(camera.position) * scale;
+    let origin = to_grid(ray.origin) * scale;
     let span = cube_span(origin, inverse, f32(side));
     var seen = vec4f(0.0);
     if span.x < span.y {

@@ -1,28 +1,39 @@
-// Where the surface seen in a pixel is, from its depth.
+// Where the surface seen in a pixel is, from its depth; for perspective and orthographic cameras alike.
 
 struct Camera {
     position: vec3f,
     forward: vec3f,
-    /// Scaled by the tangent of half the field of view, as `up` is.
+    /// Half the picture's width at distance 1, as `up` is half its height.
     right: vec3f,
     up: vec3f,
-    near: f32,
+    /// 1 for an orthographic camera, whose rays are parallel, else 0.
+    parallel: f32,
+    distance: vec4f,
 }
 
 var<uniform> camera: Camera;
 
-/// Point on the ray through the centre of a pixel, one unit along `forward`, relative to the camera.
-fn pixel_ray(pixel: vec2u, size: vec2u) -> vec3f {
-    let at = (vec2f(pixel) + 0.5) / vec2f(size) * 2.0 - 1.0;
-    return camera.forward + at.x * camera.right - at.y * camera.up;
+struct Ray {
+    origin: vec3f,
+    /// One unit along `camera.forward`.
+    direction: vec3f,
 }
 
-/// Distance along `forward`, metres. Depth is reversed with an infinite far plane: `near / distance`, 0 for nothing.
+/// The ray through the centre of a pixel.
+fn pixel_ray(pixel: vec2u, size: vec2u) -> Ray {
+    let at = (vec2f(pixel) + 0.5) / vec2f(size) * 2.0 - 1.0;
+    let aside = at.x * camera.right - at.y * camera.up;
+    return Ray(camera.position + camera.parallel * aside, camera.forward + (1.0 - camera.parallel) * aside);
+}
+
+/// Distance along `forward`, metres. Depth is reversed: 1 at the near plane; 0 for nothing.
 /// (Going by the rays rather than by an inverse matrix keeps the full precision of the depth.)
 fn depth_to_distance(depth: f32) -> f32 {
-    return camera.near / max(depth, 1e-30);
+    let c = camera.distance;
+    return (c.x + c.y * depth) / max(c.z + c.w * depth, 1e-30);
 }
 
 fn pixel_position(pixel: vec2u, size: vec2u, depth: f32) -> vec3f {
-    return camera.position + pixel_ray(pixel, size) * depth_to_distance(depth);
+    let ray = pixel_ray(pixel, size);
+    return ray.origin + ray.direction * depth_to_distance(depth);
 }

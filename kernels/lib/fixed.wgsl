@@ -1,9 +1,9 @@
 // Sums in fixed point: integers, so that the result does not depend on the order of the threads.
 //
-// 16 fraction bits for values in [0, 1], 15 for values in [-1, 1] (two's complement in a u32). A sum holds
-// 2^16 - 1 terms without overflow: 65535 · 2^16 < 2^32 and 65535 · 2^15 < 2^31. Rounding: half a step, 2^-17 or 2^-16.
+// 16 fraction bits for values in [0, 1], 15 for values in [-1, 1] (two's complement in a u32). Two sums of 2^15 - 1 terms
+// can be added without overflow: 65534 · 2^16 < 2^32 and 65534 · 2^15 < 2^31. Rounding: half a step, 2^-17 or 2^-16.
 
-const MOST_TERMS: u32 = 65535u;
+const MOST_TERMS: u32 = 32767u;
 
 fn fixed_unsigned(value: f32) -> u32 {
     return u32(round(clamp(value, 0.0, 1.0) * 65536.0));

@@ -12,6 +12,8 @@ import lib/scene;
 struct Camera {
     view_projection: mat4x4f,
     position: vec3f,
+    forward: vec3f,
+    parallel: f32,
 }
 
 var<uniform> camera: Camera;
@@ -74,7 +76,7 @@ fn fragment(in: Varying) -> Targets {
     if is_hole(in.material, base.a) {
         discard;
     }
-    let to_camera = camera.position - in.position;
+    let to_camera = mix(camera.position - in.position, -camera.forward, camera.parallel);
     let front = dot(in.face_normal, to_camera) >= 0.0;
     let side = select(-1.0, 1.0, front);
     let face_normal = in.face_normal * side;

@@ -4,9 +4,7 @@
 // emission leaves to the back too.)
 // Reads 4 B, 16 B where filled; writes one texel.
 
-import lib/fixed;
-import lib/grid;
-import lib/sum_words;
+import lib/voxel_sums;
 
 struct SceneFacts {
     max_emission: f32,
@@ -14,7 +12,6 @@ struct SceneFacts {
 
 var<uniform> scene: SceneFacts;
 
-var<storage, read> sums: array<u32>;
 var voxels: texture_storage_3d<rgba16float, write>;
 
 @compute @workgroup_size(4, 4, 4)
@@ -24,13 +21,13 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let at = voxel_number(id, size.x) * SUM_WORDS;
-    let count = min(sums[at], MOST_TERMS);
+    let count = fragments_at(at);
     var value = vec4f(0.0);
     if count > 0u {
         let mean = vec3f(
-            mean_unsigned(sums[at + SUM_EMISSION], count),
-            mean_unsigned(sums[at + SUM_EMISSION + 1u], count),
-            mean_unsigned(sums[at + SUM_EMISSION + 2u], count),
+            mean_unsigned(sum_at(at + SUM_EMISSION), count),
+            mean_unsigned(sum_at(at + SUM_EMISSION + 1u), count),
+            mean_unsigned(sum_at(at + SUM_EMISSION + 2u), count),
         );
         value = vec4f(mean * scene.max_emission, 1.0);
     }

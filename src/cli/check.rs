@@ -6,7 +6,8 @@ use crate::device;
 use crate::graph;
 use crate::picture;
 use crate::problem::{Problem, Problems, Result};
-use crate::scene;
+use crate::record;
+use crate::scene::Scene;
 use crate::schedule::{Fate, Placement, Step};
 use crate::session::{Prepared, bytes, prepare};
 use clap::Args;
@@ -38,7 +39,7 @@ pub struct CheckArgs {
 
 pub fn run(args: &CheckArgs) -> Result<()> {
     let library = args.pipeline_args.library()?;
-    let scene = args.scene.as_ref().map(|path| scene::load(path)).transpose()?;
+    let scene = args.scene.as_ref().map(|path| args.pipeline_args.scene(path)).transpose()?;
     let names = match args.pipelines.is_empty() {
         true => library.list(crate::library::Shelf::Pipelines),
         false => args.pipelines.clone(),
@@ -49,7 +50,11 @@ pub fn run(args: &CheckArgs) -> Result<()> {
     let limits = args.limits.as_deref().map(read_limits).transpose()?;
     let (mut problems, mut reports) = (Vec::new(), Vec::new());
     for name in &names {
-        match prepare(&args.pipeline_args.request(name), &library, scene.as_ref()) {
+        let request = match &scene {
+            Some(scene) => args.pipeline_args.request_for(name, scene),
+            None => args.pipeline_args.request(name),
+        };
+        match prepare(&request, &library, scene.as_ref()) {
             Err(found) => problems.extend(found.iter().cloned()),
             Ok(prepared) => {
                 prepared.warnings.iter().for_each(tell);
@@ -69,10 +74,11 @@ pub fn run(args: &CheckArgs) -> Result<()> {
     }
     Problems::check(problems)?;
     if args.json {
-        let list: Vec<_> = reports.iter().map(|(name, prepared)| json(name, prepared)).collect();
+        let list: Vec<_> =
+            reports.iter().map(|(name, prepared)| json(name, prepared, scene.as_ref())).collect();
         print_json(&serde_json::json!({ "schema": crate::record::SCHEMA, "pipelines": list }));
     } else {
-        reports.iter().for_each(|(name, prepared)| print(&text(name, prepared)));
+        reports.iter().for_each(|(name, prepared)| print(&text(name, prepared, scene.as_ref())));
     }
     Ok(())
 }
@@ -130,7 +136,23 @@ fn place(placement: &Placement) -> String {
     }
 }
 
-fn text(name: &str, prepared: &Prepared) -> String {
+/// What is or, without a scene, can be lacking.
+fn lacks(prepared: &Prepared, scene: Option<&Scene>) -> Vec<String> {
+    match scene {
+        Some(scene) => record::lacks(scene, &prepared.graph),
+        None => {
+            let lacks = prepared.graph.plan.lacks.iter();
+            lacks
+                .map(|lack| match &lack.unknown {
+                    Some(when) => format!("{} (if {when})", lack.what),
+                    None => lack.what.clone(),
+                })
+                .collect()
+        }
+    }
+}
+
+fn text(name: &str, prepared: &Prepared, scene: Option<&Scene>) -> String {
     let (graph, schedule) = (&prepared.graph, &prepared.schedule);
     let mut text = format!("{name}: {}\n", graph.plan.about);
     let width = graph.stages.iter().map(|s| s.path.len()).max().unwrap_or(0);
@@ -156,16 +178,20 @@ fn text(name: &str, prepared: &Prepared) -> String {
     let memory = &schedule.memory;
     let _infallible = writeln!(
         text,
-        "  memory: {} (without reuse {}, least possible {}), kept for later frames {}\n",
+        "  memory: {} (without reuse {}, least possible {}), kept for later frames {}",
         bytes(memory.peak_bytes),
         bytes(memory.without_reuse_bytes),
         bytes(memory.lower_bound_bytes),
         bytes(memory.kept_bytes)
     );
+    for lack in lacks(prepared, scene) {
+        let _infallible = writeln!(text, "  left out: {lack}");
+    }
+    text.push('\n');
     text
 }
 
-fn json(name: &str, prepared: &Prepared) -> serde_json::Value {
+fn json(name: &str, prepared: &Prepared, scene: Option<&Scene>) -> serde_json::Value {
     let (graph, schedule) = (&prepared.graph, &prepared.schedule);
     let stages: Vec<_> = graph
         .stages
@@ -204,6 +230,7 @@ fn json(name: &str, prepared: &Prepared) -> serde_json::Value {
             "peak_bytes": schedule.memory.peak_bytes, "without_reuse_bytes": schedule.memory.without_reuse_bytes,
             "kept_bytes": schedule.memory.kept_bytes, "lower_bound_bytes": schedule.memory.lower_bound_bytes,
         },
+        "lacks": lacks(prepared, scene),
         "warnings": prepared.warnings.iter().map(Problem::to_json).collect::<Vec<_>>(),
     })
 }

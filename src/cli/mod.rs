@@ -9,15 +9,20 @@ mod generate;
 mod kernels;
 mod outputs;
 mod picture_graph;
+mod profile;
 mod render;
+mod run;
+mod savings;
 mod scenes;
 
 use crate::library::Library;
+use crate::play;
 use crate::problem::{Problem, Problems, Result};
+use crate::scene::{self, Scene};
 use crate::session::Request;
 use clap::{Args, Parser, Subcommand};
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// A workbench for voxel-based global illumination: techniques as pipeline graphs, measured in time and error.
@@ -34,6 +39,8 @@ struct Cli {
 enum Command {
     /// Render a scene by a pipeline: pictures, and the time of each stage.
     Render(Box<render::RenderArgs>),
+    /// Profile a pipeline: time, bytes and bandwidth of each stage over many frames; traces.
+    Profile(Box<profile::ProfileArgs>),
     /// Check pipelines without rendering: problems, what would run, memory, the graph as a picture.
     Check(Box<check::CheckArgs>),
     /// List kernels with their bindings and documentation.
@@ -79,6 +86,13 @@ struct PipelineArgs {
     /// Run every stage in each frame, whatever changes.
     #[arg(long)]
     no_keep: bool,
+    /// The scene as it is at this time of its motion.
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = seconds)]
+    time: f64,
+    /// Play the scene's motion from `--time` on, at so many frames a second of its time; what does not depend on what
+    /// moved is kept.
+    #[arg(long, value_name = "FPS", conflicts_with = "changes", value_parser = rate)]
+    play: Option<f64>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -108,6 +122,24 @@ impl PipelineArgs {
         Library::new(self.libraries.clone())
     }
 
+    /// The scene at the time asked for.
+    fn scene(&self, path: &Path) -> Result<Scene> {
+        let mut scene = scene::load(path)?;
+        scene.pose(self.time);
+        Ok(scene)
+    }
+
+    /// With `--play`, what `scene` moves may change between frames, and nothing else.
+    fn request_for(&self, pipeline: &str, scene: &Scene) -> Request {
+        let request = self.request(pipeline);
+        match self.play {
+            Some(_) if !self.no_keep => {
+                Request { keep: true, varying: play::varies(scene, self.camera), ..request }
+            }
+            _ => request,
+        }
+    }
+
     fn request(&self, pipeline: &str) -> Request {
         let keep = !self.changes.is_empty() && !self.no_keep;
         let causes = self.changes.iter().flat_map(|c| c.causes());
@@ -128,6 +160,16 @@ impl PipelineArgs {
             memory: self.memory,
         }
     }
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let time = text.parse().ok().filter(|time: &f64| time.is_finite() && *time >= 0.0);
+    time.ok_or_else(|| format!("`{text}` is no time in seconds from 0 on"))
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate: &f64| rate.is_finite() && *rate > 0.0);
+    rate.ok_or_else(|| format!("`{text}` is no number of frames a second"))
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {
@@ -160,6 +202,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let json = match &cli.command {
         Command::Render(args) => args.json,
+        Command::Profile(args) => args.json,
         Command::Check(args) => args.json,
         Command::Kernels(args) => args.json,
         Command::Devices(args) => args.json,
@@ -168,6 +211,7 @@ pub fn main() -> ExitCode {
     };
     let result = match &cli.command {
         Command::Render(args) => render::run(args),
+        Command::Profile(args) => profile::run(args),
         Command::Check(args) => check::run(args),
         Command::Kernels(args) => kernels::run(args),
         Command::Devices(args) => devices::run(args),

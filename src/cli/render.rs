@@ -1,29 +1,21 @@
 //! `voxgi render`: pictures, and the time of each stage.
 
 use super::outputs::{Target, Writer};
-use super::{PipelineArgs, print, print_json, tell};
-use crate::device::{Gpu, LimitSet};
-use crate::frame::{Changes, Clock, Frame, Poison, calibrate};
+use super::run::{RunArgs, Started, heading, progress, to_json};
+use super::{print, print_json, savings};
+use crate::frame::Poison;
 use crate::picture::{self, Curve};
 use crate::problem::{Problem, Result};
-use crate::record::{self, Record, Samples};
-use crate::scene::{self, Scene};
-use crate::session::{bytes, prepare};
+use crate::record::{Record, Samples};
+use crate::session::bytes;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::PathBuf;
 
 #[derive(Args)]
 pub struct RenderArgs {
-    /// A glTF file (.gltf, .glb) or a setting (.ron).
-    scene: PathBuf,
-    /// A pipeline's name, or the path of its .ron file.
-    #[arg(short, long)]
-    pipeline: String,
     #[command(flatten)]
-    pipeline_args: PipelineArgs,
+    run: RunArgs,
     /// Write an output to a file (.png or .exr); may be repeated. Default: `display`, or else `color`.
     #[arg(long = "output", value_name = "NAME[=FILE]")]
     outputs: Vec<String>,
@@ -43,21 +35,15 @@ pub struct RenderArgs {
     /// Stops of exposure before the tone curve: 1 doubles.
     #[arg(long, value_name = "STOPS", default_value_t = 0.0, allow_negative_numbers = true)]
     exposure: f32,
-    /// Use the adapter whose name contains this.
-    #[arg(long, value_name = "NAME")]
-    adapter: Option<String>,
-    /// Ask the device for no more than WebGPU guarantees.
-    #[arg(long)]
-    webgpu_limits: bool,
-    /// Time stages by the wall clock, each submitted alone.
-    #[arg(long)]
-    wall_clock: bool,
     /// Fill undefined memory with a pattern, to find stages that read it.
     #[arg(long, value_name = "PATTERN", value_enum)]
     poison: Option<PoisonArg>,
     /// Look for the first stage that writes NaN or infinities.
     #[arg(long)]
     scan: bool,
+    /// Measure what each stage that was kept or dropped takes when it runs.
+    #[arg(long)]
+    savings: bool,
     /// Print the record as one JSON object.
     #[arg(long)]
     pub json: bool,
@@ -70,43 +56,35 @@ enum PoisonArg {
 }
 
 pub fn run(args: &RenderArgs) -> Result<()> {
-    let library = args.pipeline_args.library()?;
-    let scene = scene::load(&args.scene)?;
-    let mut request = args.pipeline_args.request(&args.pipeline);
-    request.reuse &= args.dumps.is_empty();
-    let prepared = prepare(&request, &library, Some(&scene))?;
-    let warnings = prepared.warnings.clone();
-    warnings.iter().for_each(tell);
-    let targets =
-        Target::parse(&prepared.graph, &args.scene, &args.outputs, &args.dumps, args.out.as_deref())?;
-    let limits = if args.webgpu_limits { LimitSet::Webgpu } else { LimitSet::Adapter };
-    let gpu = Gpu::open(args.adapter.as_deref(), &limits)?;
-    let clock = match args.wall_clock {
-        true => Clock::Wall("asked for by --wall-clock".to_owned()),
-        false => calibrate::choose(&gpu)?,
-    };
+    let ready = args.run.prepare(|request| request.reuse &= args.dumps.is_empty())?;
+    let targets = Target::parse(
+        &ready.prepared.graph,
+        &args.run.scene,
+        &args.outputs,
+        &args.dumps,
+        args.out.as_deref(),
+    )?;
     let poison = args.poison.map(|p| match p {
         PoisonArg::Ones => Poison::Ones,
         PoisonArg::Pattern => Poison::Pattern,
     });
-    let changes = match request.keep {
-        true => Changes::Only(request.varying.clone()),
-        false => Changes::All,
-    };
-    let mut frame = prepared.realise(&gpu, &scene, clock.clone(), poison)?;
-    let samples = sample(&mut frame, &gpu, &changes, args.frames)?;
-    let scan = if args.scan { Some(frame.scan(&gpu)?) } else { None };
+    let mut started = args.run.start(ready, poison)?;
+    let samples = sample(&mut started, args.frames)?;
+    let Started { gpu, frame, .. } = &mut started;
+    let scan = if args.scan { Some(frame.scan(gpu)?) } else { None };
     if let Some(folder) = &args.out {
         std::fs::create_dir_all(folder).map_err(|e| {
             Problem::failure("unwritable", format!("can't make the folder `{}`: {e}", folder.display()))
         })?;
     }
-    let writer = Writer { gpu: &gpu, frame: &frame, curve: args.curve, exposure: args.exposure };
+    let writer = Writer { gpu, frame, curve: args.curve, exposure: args.exposure };
     let outputs = writer.write(&targets)?;
-    let mut record = make_record(args, &scene, &gpu, &frame, &samples, &clock)?;
-    record.warnings = warnings.iter().map(Problem::to_json).collect();
+    let mut record = started.record(&args.run, &samples)?;
     record.outputs = outputs;
     record.scan = scan;
+    if args.savings {
+        savings::measure(&mut record.stages, &args.run, &started)?;
+    }
     if let Some(folder) = &args.out {
         let path = folder.join("record.json");
         picture::write_bytes(&path, format!("{:#}\n", to_json(&record)?).as_bytes())?;
@@ -130,74 +108,30 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     }
 }
 
-/// The first frame apart, then, from the same state, the frames that count; or the first frame alone.
-fn sample(frame: &mut Frame, gpu: &Gpu, changes: &Changes, frames: Option<u32>) -> Result<Samples> {
-    let bar = ProgressBar::new(u64::from(frames.unwrap_or(0)) + 1);
-    if let Ok(style) = ProgressStyle::with_template("{wide_bar} {pos}/{len} frames, {eta} left") {
-        bar.set_style(style);
-    }
-    let first = frame.run(gpu, changes)?.clone();
+/// The first frame apart, then, from the same state, the frames that count, which the scene's motion goes on with; or
+/// the first frame alone.
+fn sample(started: &mut Started, frames: Option<u32>) -> Result<Samples> {
+    let bar = progress(u64::from(frames.unwrap_or(0)) + 1);
+    let changes = started.changes.clone();
+    let first = started.frame.run(&started.gpu, &changes)?.clone();
     bar.inc(1);
     let mut samples = Samples { first: Some(first.clone()), frames: Vec::new() };
     match frames {
         None => samples.frames.push(first),
         Some(frames) => {
             // What is kept stays kept; only a pipeline that goes on from frame to frame starts again.
-            if frame.goes_on() {
-                frame.reset();
+            if started.frame.goes_on() {
+                started.frame.reset();
             }
-            for _ in 0..frames {
-                samples.frames.push(frame.run(gpu, changes)?.clone());
+            for index in 1..=frames {
+                let changes = started.go_to(index, None)?;
+                samples.frames.push(started.frame.run(&started.gpu, &changes)?.clone());
                 bar.inc(1);
             }
         }
     }
     bar.finish_and_clear();
     Ok(samples)
-}
-
-fn make_record(
-    args: &RenderArgs,
-    scene: &Scene,
-    gpu: &Gpu,
-    frame: &Frame,
-    samples: &Samples,
-    clock: &Clock,
-) -> Result<Record> {
-    let plan = &frame.graph.plan;
-    let (clock, clock_reason) = record::clock(clock);
-    let [width, height] = args.pipeline_args.size;
-    Ok(Record {
-        schema: record::SCHEMA,
-        pipeline: args.pipeline.clone(),
-        scene: scene.name.clone(),
-        camera: scene.cameras.get(args.pipeline_args.camera).map(|c| c.name.clone()).unwrap_or_default(),
-        width,
-        height,
-        knobs: plan.knobs.iter().map(|k| (k.path.clone(), record::value(&k.value))).collect(),
-        parts: plan.parts.clone(),
-        adapter: record::adapter(gpu),
-        clock,
-        clock_reason,
-        frames: samples.frames.len(),
-        frame_ms: samples.median(|t| t.frame),
-        frame: samples.frame_spread(),
-        first_use_ms: samples.first.as_ref().and_then(|t| t.frame),
-        encode_ms: samples.median(|t| Some(t.encode)),
-        fills_ms: samples.median(|t| record::fills(frame, t)),
-        stages: record::stages(frame, samples),
-        counters: frame.counters(gpu)?.into_iter().collect(),
-        memory: record::memory(frame),
-        lacks: scene.lacks.iter().map(ToString::to_string).collect(),
-        warnings: Vec::new(),
-        outputs: BTreeMap::new(),
-        scan: None,
-    })
-}
-
-fn to_json(record: &Record) -> Result<serde_json::Value> {
-    serde_json::to_value(record)
-        .map_err(|e| Problem::failure("record", format!("the record can't be written as JSON: {e}")).into())
 }
 
 /// The record as a table for people.
@@ -208,22 +142,11 @@ fn table(record: &Record) -> String {
         let _infallible = text.write_fmt(line);
         text.push('\n');
     };
-    line(format_args!(
-        "{} by {}, {}x{}, on {} ({} {})",
-        record.scene,
-        record.pipeline,
-        record.width,
-        record.height,
-        record.adapter.name,
-        record.adapter.driver,
-        record.adapter.driver_info
-    ));
-    let why = record.clock_reason.as_ref().map_or_else(String::new, |why| format!(", since {why}"));
     let which = match record.frames {
         1 => "one frame".to_owned(),
         frames => format!("medians of {frames} frames"),
     };
-    line(format_args!("clock: {}{why}; {which}, in ms\n", record.clock));
+    line(format_args!("{}, in ms\n", heading(record, &which)));
     let widest = record.stages.iter().map(|s| s.path.len()).max().unwrap_or(0).max(5);
     line(format_args!(
         "{:<widest$}  {:>9}  {:>9}  {:>9}  {:>9}",
@@ -237,7 +160,10 @@ fn table(record: &Record) -> String {
                 ms(stage.gpu_ms),
                 ms(stage.first_use_ms)
             )),
-            Some(reason) => line(format_args!("{:<widest$}  {:>9}  {reason}", stage.path, stage.status)),
+            Some(reason) => {
+                let saved = stage.saved_ms.map_or_else(String::new, |saved| format!("; saves {saved:.3}"));
+                line(format_args!("{:<widest$}  {:>9}  {reason}{saved}", stage.path, stage.status));
+            }
         }
     }
     line(format_args!("{:<widest$}  {:>9}", "fills", ms(record.fills_ms)));

@@ -2,10 +2,12 @@
 
 use super::read::{Fields, Reader};
 use super::tree::{Node, Tree};
-use super::{Allowed, Cause, Compare, Document, Filter, Knob, Resource, Root, Sampler, Spanned, Start, Wrap};
+use super::{
+    Allowed, Cause, Compare, Document, Filter, Knob, Lack, Resource, Root, Sampler, Spanned, Start, Wrap,
+};
 use crate::problem::Problem;
 
-const SHARED: [&str; 6] = ["about", "knobs", "values", "samplers", "resources", "stages"];
+const SHARED: [&str; 7] = ["about", "knobs", "values", "samplers", "resources", "stages", "lacks"];
 const OF_PIPELINES: [&str; 2] = ["parts", "outputs"];
 const OF_PARTS: [&str; 3] = ["role", "module", "exports"];
 
@@ -62,6 +64,7 @@ impl Reader<'_> {
             Some(Spanned { value: reader.resource(tree)?, place: reader.place(&tree.span) })
         });
         let stages = self.optional(fields.get("stages"), Self::stages);
+        let lacks = self.optional(fields.get("lacks"), |reader, tree| reader.list(tree, Self::lack));
         Some(Document {
             source: self.source.clone(),
             root: root?,
@@ -71,7 +74,15 @@ impl Reader<'_> {
             samplers: samplers?,
             resources: resources?,
             stages: stages?.unwrap_or_default(),
+            lacks: lacks?.unwrap_or_default(),
         })
+    }
+
+    fn lack(&mut self, tree: &Tree) -> Option<Lack> {
+        let fields = self.fields(tree, "what is lacking", &["when", "what"])?;
+        let when = self.required(&fields, "when").and_then(|tree| self.expression(tree));
+        let what = self.required(&fields, "what").and_then(|tree| self.text(tree));
+        Some(Lack { when: when?, what: what? })
     }
 
     fn pipeline(&mut self, fields: &Fields<'_>) -> Option<Root> {
@@ -195,14 +206,21 @@ impl Reader<'_> {
             },
             "Covered" if matches!(tree.node, Node::Name) => Start::Covered,
             "Covered" => return self.wrong(tree, "`Covered` alone"),
-            _ if matches!(tree.node, Node::Name) => Start::Kept { value: 0.0, reset: Vec::new() },
+            _ if matches!(tree.node, Node::Name) => {
+                Start::Kept { value: 0.0, reset: Vec::new(), steady: false }
+            }
             _ => {
-                let fields = self.fields(tree, "`Kept`", &["value", "reset"])?;
+                let fields = self.fields(tree, "`Kept`", &["value", "reset", "steady"])?;
                 let value = self.optional(fields.get("value"), Self::number);
                 let reset = self.optional(fields.get("reset"), |reader, tree| {
                     reader.list(tree, |reader, tree| reader.choice(tree, "a cause of change", &CAUSES))
                 });
-                Start::Kept { value: value?.unwrap_or(0.0), reset: reset?.unwrap_or_default() }
+                let steady = self.optional(fields.get("steady"), Self::flag);
+                Start::Kept {
+                    value: value?.unwrap_or(0.0),
+                    reset: reset?.unwrap_or_default(),
+                    steady: steady?.unwrap_or(false),
+                }
             }
         };
         Some(self.spanned(start, tree))

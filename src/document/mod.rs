@@ -51,6 +51,15 @@ pub struct Document {
     pub samplers: Entries<Sampler>,
     pub resources: Entries<Resource>,
     pub stages: Vec<Spanned<Stage>>,
+    pub lacks: Vec<Lack>,
+}
+
+/// `(when: "scene.max_metallic > 0", what: "metals are rendered matt")`: what a scene can call for and the file can't do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lack {
+    pub when: ExprText,
+    /// A sentence without its full stop: what is done instead.
+    pub what: Spanned<String>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -158,7 +167,12 @@ pub enum Start {
     /// Undefined: stages write every texel before any is read.
     Covered,
     /// What the frame before left; `value` before the first frame and after any of `reset` changed.
-    Kept { value: f64, reset: Vec<Cause> },
+    Kept {
+        value: f64,
+        reset: Vec<Cause>,
+        /// Stages that run again without a change leave it as it was, so that they may be kept.
+        steady: bool,
+    },
 }
 
 /// What can change between frames.
@@ -200,6 +214,17 @@ pub enum Stage {
     },
 }
 
+/// Which triangles of the scene a stage goes over.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Geometry {
+    #[default]
+    All,
+    /// Those that no motion moves.
+    Still,
+    /// Those that some motion moves, even if not in this frame.
+    Moving,
+}
+
 /// What every kernel call says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Call {
@@ -210,6 +235,8 @@ pub struct Call {
     pub when: Option<ExprText>,
     /// Binding (or target) → resource, possibly one mip, layer or history slot of it: `"radiance@mip(level + 1)"`.
     pub bind: Entries<String>,
+    /// What `Triangles`, `Scene` and the uniform `geometry` stand for.
+    pub geometry: Geometry,
     /// Why the result depends on thread order by nature, if it does.
     pub order_dependent: Option<String>,
 }
@@ -227,6 +254,8 @@ pub enum Extent {
     Texels(Spanned<String>),
     /// One to three expressions.
     Count(Vec<ExprText>),
+    /// One for each triangle of the stage's geometry.
+    Triangles,
     /// Workgroup counts that a kernel wrote: three u32 at element `offset` (default 0) of the buffer.
     Indirect { buffer: Spanned<String>, offset: Option<ExprText> },
 }
@@ -242,7 +271,7 @@ pub struct Raster {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Draw {
-    /// Three vertices for each triangle of the scene, pulled from the scene's buffers.
+    /// Three vertices for each triangle of the stage's geometry, pulled from the scene's buffers.
     Scene,
     /// One triangle that covers the screen: three vertices.
     Screen,

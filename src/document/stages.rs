@@ -2,11 +2,13 @@
 
 use super::read::{Fields, Reader};
 use super::tree::{Node, Tree};
-use super::{Blend, Call, Compute, Depth, Draw, ExprText, Extent, Over, Raster, Spanned, Stage};
+use super::{Blend, Call, Compute, Depth, Draw, ExprText, Extent, Geometry, Over, Raster, Spanned, Stage};
 use crate::problem::Problem;
 
 const STAGES: [&str; 5] = ["Compute", "Raster", "Part", "Each", "Repeat"];
 const BLENDS: [(&str, Blend); 3] = [("Add", Blend::Add), ("Alpha", Blend::Alpha), ("Max", Blend::Max)];
+const GEOMETRIES: [(&str, Geometry); 3] =
+    [("All", Geometry::All), ("Still", Geometry::Still), ("Moving", Geometry::Moving)];
 
 impl Reader<'_> {
     pub fn stages(&mut self, tree: &Tree) -> Option<Vec<Spanned<Stage>>> {
@@ -31,18 +33,22 @@ impl Reader<'_> {
         let kernel = self.required(fields, "kernel").and_then(|tree| self.text(tree));
         let when = self.optional(fields.get("when"), Self::expression);
         let bind = self.entries(fields.get("bind"), Self::text);
+        let geometry = self.optional(fields.get("geometry"), |reader, tree| {
+            reader.choice(tree, "a part of the scene", &GEOMETRIES)
+        });
         let order_dependent = self.optional(fields.get("order_dependent"), Self::text);
         Some(Call {
             name: name?,
             kernel: kernel?,
             when: when?,
             bind: bind?,
+            geometry: geometry?.unwrap_or_default(),
             order_dependent: order_dependent?.map(|reason| reason.value),
         })
     }
 
     fn compute(&mut self, tree: &Tree) -> Option<Stage> {
-        let known = ["kernel", "name", "over", "when", "bind", "order_dependent"];
+        let known = ["kernel", "name", "over", "geometry", "when", "bind", "order_dependent"];
         let fields = self.fields(tree, "a compute stage", &known)?;
         let call = self.call(&fields);
         let over = self.required(&fields, "over").and_then(|tree| {
@@ -53,22 +59,23 @@ impl Reader<'_> {
     }
 
     fn extent(&mut self, tree: &Tree) -> Option<Extent> {
-        Some(
-            match self.variant(tree, "what a compute stage goes over", &["Texels", "Count", "Indirect"])? {
-                "Texels" => Extent::Texels(self.only(tree, "`Texels(\"resource\")`", Self::text)?),
-                "Count" => match &tree.node {
-                    Node::Tuple(_, items) if (1..=3).contains(&items.len()) => {
-                        let counts: Vec<_> = items.iter().map(|item| self.expression(item)).collect();
-                        Extent::Count(counts.into_iter().collect::<Option<_>>()?)
-                    }
-                    _ => return self.wrong(tree, "`Count` of one to three expressions"),
-                },
-                _ => {
-                    let (buffer, offset) = self.indirect(tree)?;
-                    Extent::Indirect { buffer, offset }
+        let known = ["Texels", "Count", "Triangles", "Indirect"];
+        Some(match self.variant(tree, "what a compute stage goes over", &known)? {
+            "Texels" => Extent::Texels(self.only(tree, "`Texels(\"resource\")`", Self::text)?),
+            "Count" => match &tree.node {
+                Node::Tuple(_, items) if (1..=3).contains(&items.len()) => {
+                    let counts: Vec<_> = items.iter().map(|item| self.expression(item)).collect();
+                    Extent::Count(counts.into_iter().collect::<Option<_>>()?)
                 }
+                _ => return self.wrong(tree, "`Count` of one to three expressions"),
             },
-        )
+            "Triangles" if matches!(tree.node, Node::Name) => Extent::Triangles,
+            "Triangles" => return self.wrong(tree, "`Triangles` alone"),
+            _ => {
+                let (buffer, offset) = self.indirect(tree)?;
+                Extent::Indirect { buffer, offset }
+            }
+        })
     }
 
     fn indirect(&mut self, tree: &Tree) -> Option<(Spanned<String>, Option<ExprText>)> {
@@ -79,7 +86,8 @@ impl Reader<'_> {
     }
 
     fn raster(&mut self, tree: &Tree) -> Option<Stage> {
-        let known = ["kernel", "name", "draw", "depth", "blend", "when", "bind", "order_dependent"];
+        let known =
+            ["kernel", "name", "draw", "geometry", "depth", "blend", "when", "bind", "order_dependent"];
         let fields = self.fields(tree, "a raster stage", &known)?;
         let call = self.call(&fields);
         let draw = self.required(&fields, "draw").and_then(|tree| {

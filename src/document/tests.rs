@@ -71,6 +71,7 @@ impl Texts {
                 match &compute.over.value {
                     Extent::Texels(of) => self.add([of]),
                     Extent::Count(counts) => self.add(counts),
+                    Extent::Triangles => {}
                     Extent::Indirect { buffer, offset } => self.add([buffer].into_iter().chain(offset)),
                 }
             }
@@ -195,7 +196,10 @@ fn fields_have_their_values() {
     assert_eq!(document.samplers[0].1.value, linear);
     assert_eq!(document.samplers[1].1.value, Sampler::default());
     let Resource::Buffer { start, .. } = &document.resources[2].1.value else { panic!("a buffer") };
-    assert_eq!(start.value, Start::Kept { value: 1.0, reset: vec![Cause::Camera, Cause::Lights] });
+    assert_eq!(
+        start.value,
+        Start::Kept { value: 1.0, reset: vec![Cause::Camera, Cause::Lights], steady: false }
+    );
     let Stage::Raster(raster) = &document.stages[3].value else { panic!("a raster stage") };
     assert_eq!(raster.blend, Some(Blend::Add));
     assert!(raster.depth.as_ref().is_some_and(|depth| !depth.write && depth.compare == Compare::Greater));

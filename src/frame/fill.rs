@@ -147,7 +147,7 @@ impl<'a> Filler<'a> {
     pub fn resets(&self) -> Result<Vec<Reset>> {
         let mut resets = Vec::new();
         for (item, planned) in self.graph.plan.resources.iter().enumerate() {
-            if let Start::Kept { value, reset } = &planned.start {
+            if let Start::Kept { value, reset, .. } = &planned.start {
                 let resource = &self.graph.resources[item];
                 let cells: Vec<u32> = (0..resource.mips * resource.layers * resource.slots).collect();
                 let fills = self.fill(item, &cells, With::Value(*value))?;

@@ -23,7 +23,7 @@ pub use fill::Poison;
 pub use readback::Image;
 pub use run::Changes;
 pub use scan::Finding;
-pub use timer::{Clock, Times};
+pub use timer::{Clock, CpuTimes, Tick, Times};
 
 use crate::device::Gpu;
 use crate::graph::{self, Graph};
@@ -106,6 +106,19 @@ impl Frame {
         let state = run::State::new(&schedule);
         gpu.wait()?;
         Ok(Self { graph, schedule, made, stages, ops, uniforms, resets, timer, state })
+    }
+
+    /// Brings the scene's buffer `name` up to date, if some stage binds it.
+    pub fn update_scene(&self, gpu: &Gpu, scene: &Scene, name: &str) {
+        let named = |planned: &crate::plan::PlannedResource| {
+            planned.kind == crate::plan::ResourceKind::Scene && planned.path == name
+        };
+        let id = self.graph.plan.resources.iter().position(named);
+        if let Some((buffer, offset, _)) = id.and_then(|id| self.made.buffer(id, 0))
+            && let Some(bytes) = scene.bytes(name)
+        {
+            gpu.queue.write_buffer(buffer, *offset, &bytes);
+        }
     }
 
     /// The table of facts that uniforms are filled from; write to it before [`Frame::run`].

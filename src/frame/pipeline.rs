@@ -77,15 +77,8 @@ impl Maker<'_> {
         let colors = raster.targets.iter().map(|t| t.as_ref().map(|r| attachment(r, true))).collect();
         let depth = raster.depth.as_ref().map(|(r, _, write)| attachment(r, *write));
         let draw = match &raster.draw {
-            Draw::Vertices(count) | Draw::Points(count) => {
-                let count = count.unwrap_or(0);
-                MadeDraw::Vertices(u32::try_from(count).map_err(|_| {
-                    Problem::input(
-                        "over-limit",
-                        format!("stage `{path}` draws {count} vertices, more than 2^32"),
-                    )
-                })?)
-            }
+            Draw::Vertices(range) => MadeDraw::Vertices(vertices(path, range.unwrap_or_default())?),
+            Draw::Points(count) => MadeDraw::Vertices(vertices(path, (0, count.unwrap_or(0)))?),
             Draw::Indirect { resource, offset } => {
                 let (buffer, offset) = self.arguments(*resource, *offset)?;
                 MadeDraw::Indirect(buffer, offset)
@@ -164,4 +157,15 @@ impl Maker<'_> {
         self.raster.push((key, pipeline.clone()));
         pipeline
     }
+}
+
+/// The range of a draw call.
+fn vertices(path: &str, (first, count): (u64, u64)) -> Result<std::ops::Range<u32>> {
+    let index = |n: u64| {
+        u32::try_from(n).map_err(|_| {
+            let message = format!("stage `{path}` draws vertices up to number {n}, more than 2^32");
+            Problem::input("over-limit", message)
+        })
+    };
+    Ok(index(first)?..index(first.saturating_add(count))?)
 }

@@ -2,13 +2,13 @@
 
 use super::fill::FillOp;
 use super::stage::{MadeDraw, MadeRaster, MadeStage, MadeWork};
-use super::timer::{Clock, Times};
+use super::timer::{Clock, CpuTimes, Tick, Times};
 use super::{Frame, Op};
 use crate::device::Gpu;
 use crate::problem::Problem;
 use crate::schedule::{Changed, FRAME, Schedule};
+use crate::zone::zone;
 use std::collections::BTreeSet;
-use std::time::Instant;
 use wgpu::{
     CommandEncoder, CommandEncoderDescriptor, ComputePass, ComputePassDescriptor, ComputePipeline, QuerySet,
     RenderPassDescriptor,
@@ -40,6 +40,7 @@ impl State {
 impl Frame {
     /// Runs one frame and waits for it. `changes` counts from the second frame on.
     pub fn run(&mut self, gpu: &Gpu, changes: &Changes) -> Result<&Times, Problem> {
+        let _frame = zone!("frame");
         self.uniforms.facts.put_frame(self.state.frame as u32);
         self.uniforms.update(gpu);
         let changed = match changes {
@@ -65,6 +66,11 @@ impl Frame {
     /// Whether something is kept from frame to frame, so that a later frame is not an earlier one again.
     pub fn goes_on(&self) -> bool {
         !self.resets.is_empty()
+    }
+
+    /// What the begins and ends in [`Times::spans`] count.
+    pub fn tick(&self) -> Tick {
+        self.timer.tick
     }
 
     /// Which steps the last frame did.
@@ -183,46 +189,59 @@ impl Frame {
 
     /// One encoder, one submission, timestamps.
     fn run_whole(&mut self, gpu: &Gpu, changes: &Changes) -> Result<(), Problem> {
-        let begin = Instant::now();
+        let begin = self.timer.now();
+        let encoding = zone!("encode");
         let mut encoder =
             gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("frame") });
         self.encode_resets(&mut encoder, changes);
         self.encode_steps(&mut encoder);
         self.timer.resolve(&mut encoder);
-        gpu.queue.submit(std::iter::once(encoder.finish()));
-        let encode = begin.elapsed().as_secs_f64() * 1e3;
+        let commands = encoder.finish();
+        drop(encoding);
+        let submit = self.timer.now();
+        let submitting = zone!("submit");
+        gpu.queue.submit(std::iter::once(commands));
+        drop(submitting);
+        let submitted = self.timer.now();
+        let _waiting = zone!("wait");
         let (ops, fills_marked) = (&self.ops, self.timer.fills);
         self.timer.collect(gpu, &self.state.done, |step| match &ops[step] {
             Op::Fill(fills) => fills_marked && !fills.is_empty(),
             Op::Stage(_) => true,
         })?;
-        self.timer.times.encode = encode;
+        let times = &mut self.timer.times;
+        times.cpu = CpuTimes { begin, submit, submitted, ..times.cpu };
+        times.encode = (submitted - begin) as f64 / 1e6;
         Ok(())
     }
 
     /// Each step in a submission of its own, timed by the wall clock.
     fn run_apart(&mut self, gpu: &Gpu, changes: &Changes) -> Result<(), Problem> {
+        let start = self.timer.now();
         let mut encoder =
             gpu.device.create_command_encoder(&CommandEncoderDescriptor { label: Some("resets") });
         self.encode_resets(&mut encoder, changes);
         gpu.queue.submit(std::iter::once(encoder.finish()));
         gpu.wait()?;
-        let (mut all, mut encoding) = (0.0, 0.0);
+        let (mut all, mut encoding) = (0, 0);
         for step in 0..self.ops.len() {
-            self.timer.times.steps[step] = None;
+            self.timer.put(step, None);
             if !self.state.done[step] {
                 continue;
             }
-            let begin = Instant::now();
+            let begin = self.timer.now();
             self.submit_step(gpu, step);
-            encoding += begin.elapsed().as_secs_f64() * 1e3;
+            encoding += self.timer.now() - begin;
             gpu.wait()?;
-            let time = begin.elapsed().as_secs_f64() * 1e3;
-            all += time;
-            self.timer.times.steps[step] = Some(time);
+            let end = self.timer.now();
+            all += end - begin;
+            self.timer.put(step, Some([begin, end]));
         }
-        self.timer.times.frame = Some(all);
-        self.timer.times.encode = encoding;
+        let done = self.timer.now();
+        let times = &mut self.timer.times;
+        times.cpu = CpuTimes { begin: start, submit: start, submitted: start, done };
+        times.frame = Some(all as f64 / 1e6);
+        times.encode = encoding as f64 / 1e6;
         Ok(())
     }
 
@@ -338,7 +357,7 @@ fn encode_raster(
     pass.set_pipeline(&raster.pipeline);
     pass.set_bind_group(0, stage.group(parity), &[]);
     match &raster.draw {
-        MadeDraw::Vertices(count) => pass.draw(0..*count, 0..1),
+        MadeDraw::Vertices(range) => pass.draw(range.clone(), 0..1),
         MadeDraw::Indirect(buffer, offset) => pass.draw_indirect(buffer, *offset),
     }
 }

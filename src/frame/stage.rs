@@ -41,7 +41,7 @@ pub struct MadeRaster {
 }
 
 pub enum MadeDraw {
-    Vertices(u32),
+    Vertices(std::ops::Range<u32>),
     Indirect(Buffer, u64),
 }
 

@@ -2,6 +2,7 @@
 
 use crate::device::Gpu;
 use crate::problem::Problem;
+use std::time::Instant;
 use wgpu::{Buffer, BufferUsages, CommandEncoder, Features, QuerySet};
 
 /// Steps that one query set has room for: sets hold 4096 timestamps at most.
@@ -33,6 +34,31 @@ pub struct Times {
     pub frame: Option<f64>,
     /// CPU time to encode and submit.
     pub encode: f64,
+    /// Begin and end of each step whose time is known, in ticks of its clock: see [`Tick`].
+    pub spans: Vec<Option<[u64; 2]>>,
+    pub cpu: CpuTimes,
+}
+
+/// What the CPU did for a frame and when, in ns since the frame was realised. By the wall clock, stages are encoded,
+/// submitted and waited for one by one: all of that then lies between `submitted` and `done`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CpuTimes {
+    /// Encoding begins.
+    pub begin: u64,
+    /// All is encoded, and goes to the queue.
+    pub submit: u64,
+    /// The queue has it.
+    pub submitted: u64,
+    /// The GPU is known to have ended.
+    pub done: u64,
+}
+
+/// What the numbers in [`Times::spans`] count.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tick {
+    pub nanoseconds: f64,
+    /// They count from the moment from which [`CpuTimes`] does; otherwise from one that is the GPU's own.
+    pub of_cpu: bool,
 }
 
 pub struct Timer {
@@ -40,8 +66,8 @@ pub struct Timer {
     sets: Vec<QuerySet>,
     resolved: Option<Buffer>,
     read: Option<Buffer>,
-    /// Nanoseconds of a tick.
-    period: f64,
+    pub tick: Tick,
+    epoch: Instant,
     /// Fills are timed from outside passes, where the adapter can.
     pub fills: bool,
     /// Whether one compute pass can hold several steps: their times are then marked inside of it.
@@ -79,13 +105,33 @@ impl Timer {
             resolved: buffer(BufferUsages::QUERY_RESOLVE | BufferUsages::COPY_SRC),
             read: buffer(BufferUsages::COPY_DST | BufferUsages::MAP_READ),
             sets,
-            period: f64::from(gpu.queue.get_timestamp_period()),
+            tick: Tick {
+                nanoseconds: if on { f64::from(gpu.queue.get_timestamp_period()) } else { 1.0 },
+                of_cpu: !on,
+            },
+            epoch: Instant::now(),
             fills: on && gpu.has(Features::TIMESTAMP_QUERY_INSIDE_ENCODERS),
             joins: on && gpu.has(Features::TIMESTAMP_QUERY_INSIDE_PASSES),
             follows: vec![false; steps],
-            times: Times { steps: vec![None; steps], ..Times::default() },
+            times: Times { steps: vec![None; steps], spans: vec![None; steps], ..Times::default() },
             clock,
         }
+    }
+
+    /// Nanoseconds since the timer was made.
+    pub fn now(&self) -> u64 {
+        u64::try_from(self.epoch.elapsed().as_nanos()).unwrap_or(u64::MAX)
+    }
+
+    /// Ticks in milliseconds.
+    fn ms(&self, ticks: u64) -> f64 {
+        ticks as f64 * self.tick.nanoseconds / 1e6
+    }
+
+    /// Puts down when a step began and ended.
+    pub fn put(&mut self, step: usize, span: Option<[u64; 2]>) {
+        self.times.spans[step] = span;
+        self.times.steps[step] = span.map(|[begin, end]| self.ms(end - begin));
     }
 
     /// The query set and first query of a step's pass.
@@ -123,6 +169,7 @@ impl Timer {
         let Some(read) = &self.read else { return Ok(()) };
         read.slice(..).map_async(wgpu::MapMode::Read, |_| {});
         gpu.wait()?;
+        self.times.cpu.done = self.now();
         let (mut first, mut last) = (u64::MAX, 0);
         {
             let bytes = read
@@ -134,8 +181,8 @@ impl Timer {
                 bytes.get(at..at + 8).and_then(|b| b.try_into().ok()).map(u64::from_le_bytes)
             };
             let mut before = None;
-            for (step, time) in self.times.steps.iter_mut().enumerate() {
-                *time = None;
+            for (step, span) in self.times.spans.iter_mut().enumerate() {
+                *span = None;
                 if !done.get(step).copied().unwrap_or(false) || !marked(step) {
                     continue;
                 }
@@ -146,13 +193,16 @@ impl Timer {
                     && begin > 0
                     && end >= begin
                 {
-                    *time = Some((end - begin) as f64 * self.period / 1e6);
+                    *span = Some([begin, end]);
                     (first, last) = (first.min(begin), last.max(end));
                 }
             }
         }
         read.unmap();
-        self.times.frame = (last > first).then(|| (last - first) as f64 * self.period / 1e6);
+        for step in 0..self.times.spans.len() {
+            self.put(step, self.times.spans[step]);
+        }
+        self.times.frame = (last > first).then(|| self.ms(last - first));
         Ok(())
     }
 }

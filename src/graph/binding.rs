@@ -1,6 +1,6 @@
 //! Ties one binding of a kernel to what it is bound to, and checks that the two fit.
 
-use super::link::scene_causes;
+use super::facts;
 use super::uniform::{Filler, is_engine_uniform};
 use super::{Bound, Resource, Shape, Touch, Usage, resource};
 use crate::document::Sampler;
@@ -124,7 +124,7 @@ impl Binder<'_> {
         let binding = use_.binding;
         let path = &self.plan.resources.get(reference.resource)?.path;
         if let ResourceKind::Scene = self.plan.resources[reference.resource].kind {
-            self.depends.extend(scene_causes(path));
+            self.depends.extend(facts::of_scene(path, self.stage.geometry, self.features));
             if let Some(problem) = resource::check_scene_layout(path, &binding.kind, &binding.place) {
                 self.problems.push(problem);
                 return None;

@@ -3,11 +3,12 @@
 //! Some are fixed for a plan (scene numbers, output size); the others live in one table of 32-bit words
 //! ([`FactTable`]) from which uniforms are filled each frame: camera, frame number, views, named values.
 
-use crate::document::Cause;
+use crate::document::{Cause, Geometry};
+use crate::expr::Value;
 use crate::kernel::Scalar;
 use crate::plan::Plan;
 use crate::scene::layout::{CameraUniform, FieldKind, View, layout};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The bit of [`crate::schedule::Task::depends`] for a cause.
 pub fn bit(cause: Cause) -> u32 {
@@ -18,6 +19,23 @@ pub fn bit(cause: Cause) -> u32 {
         Cause::Lights => 3,
         Cause::Camera => 4,
         Cause::Knobs => 5,
+    }
+}
+
+/// What a stage over this geometry depends on; nothing moves where it is known that nothing can.
+pub fn geometry(geometry: Geometry, features: &BTreeMap<String, Value>) -> BTreeSet<u32> {
+    let still = geometry == Geometry::Still || features.get("scene.moving") == Some(&Value::Flag(false));
+    let causes = [Cause::Geometry, Cause::Moving];
+    causes[..if still { 1 } else { 2 }].iter().map(|cause| bit(*cause)).collect()
+}
+
+/// What a stage over this geometry depends on if it binds the scene's buffer `name`.
+pub fn of_scene(name: &str, over: Geometry, features: &BTreeMap<String, Value>) -> BTreeSet<u32> {
+    match name {
+        "lights" => BTreeSet::from([bit(Cause::Lights)]),
+        "views" => BTreeSet::from([bit(Cause::Lights), bit(Cause::Geometry)]),
+        "instances" => geometry(over, features),
+        _ => BTreeSet::from([bit(Cause::Geometry)]),
     }
 }
 
@@ -97,6 +115,7 @@ pub fn view(values: usize, index: u32, name: &str) -> Option<Slot> {
 pub fn field_names(uniform: &str) -> Vec<&'static str> {
     match uniform {
         "frame" => vec!["index"],
+        "geometry" => vec!["first", "triangles"],
         "view" => field_names("views"),
         _ => layout(uniform).map_or(Vec::new(), |l| l.fields.iter().map(|f| f.name).collect()),
     }
@@ -129,8 +148,17 @@ impl FactTable {
         self.put(words("camera"), &[index]);
     }
 
-    pub fn put_value(&mut self, index: usize, component: usize, number: f64) {
-        self.put(value(index).start + component as u32, &[(number as f32).to_bits()]);
+    /// Named value `index`; texts and unknown ones have no word.
+    pub fn put_value(&mut self, index: usize, to: &Value) {
+        let mut number = |component: usize, number: f64| {
+            self.put(value(index).start + component as u32, &[(number as f32).to_bits()]);
+        };
+        match to {
+            Value::Number(n) => number(0, *n),
+            Value::Flag(flag) => number(0, f64::from(u8::from(*flag))),
+            Value::Vector(numbers) => numbers.iter().enumerate().for_each(|(i, n)| number(i, *n)),
+            Value::Text(_) | Value::Unknown => {}
+        }
     }
 
     pub fn put_views(&mut self, views: &[View]) {

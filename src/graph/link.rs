@@ -1,11 +1,10 @@
 //! From a plan to a graph: composes, reflects and binds each stage's kernel.
 
 use super::binding::{self, Binder};
-use super::facts::{self, bit};
+use super::facts;
 use super::{
     Action, Draw, Graph, Linked, Raster, Resource, Stage, Threads, Touch, Usage, check, resource, target,
 };
-use crate::document::Cause;
 use crate::expr::{Names, Value};
 use crate::kernel::{self, Choice, Composed, Entry, Reflected, Variants, compose};
 use crate::library::Library;
@@ -158,7 +157,7 @@ impl Linker<'_> {
                     &mut problems,
                 );
                 if matches!(draw, plan::Draw::Scene) {
-                    depends.insert(bit(Cause::Geometry));
+                    depends.extend(facts::geometry(planned.geometry, self.linking.features));
                 }
                 let fragment = entries.iter().find(|e| e.stage == kernel::Stage::Fragment);
                 Action::Raster(Box::new(Raster {
@@ -167,7 +166,7 @@ impl Linker<'_> {
                     targets,
                     depth: depth.as_ref().map(|d| (d.target, d.compare, d.write)),
                     blend: *blend,
-                    draw: self.draw(draw, &mut touches),
+                    draw: self.draw(planned, draw, &mut touches),
                     size,
                 }))
             }
@@ -248,17 +247,14 @@ impl Linker<'_> {
         Action::Compute { entry: entry.name.clone(), workgroup: entry.workgroup_size, threads }
     }
 
-    fn draw(&self, draw: &plan::Draw, touches: &mut Vec<Touch>) -> Draw {
+    fn draw(&self, planned: &PlannedStage, draw: &plan::Draw, touches: &mut Vec<Touch>) -> Draw {
         match draw {
             plan::Draw::Scene => {
-                let triangles = self.linking.features.get("scene.triangles");
-                Draw::Vertices(match triangles {
-                    Some(Value::Number(n)) => Some(3 * *n as u64),
-                    _ => None,
-                })
+                let triangles = plan::triangles(self.linking.features, planned.geometry);
+                Draw::Vertices(triangles.map(|(first, count)| (3 * first, 3 * count)))
             }
-            plan::Draw::Screen => Draw::Vertices(Some(3)),
-            plan::Draw::Vertices(count) => Draw::Vertices(*count),
+            plan::Draw::Screen => Draw::Vertices(Some((0, 3))),
+            plan::Draw::Vertices(count) => Draw::Vertices(count.map(|count| (0, count))),
             plan::Draw::Points(count) => Draw::Points(*count),
             plan::Draw::Indirect(reference, offset, _) => {
                 touches.push(indirect(reference));
@@ -316,14 +312,4 @@ fn choose<'a>(planned: &PlannedStage, reflected: &'a Reflected) -> Result<Vec<&'
             }
         }
     }
-}
-
-/// The causes that are bits of `depends` for a scene's buffer.
-pub fn scene_causes(name: &str) -> BTreeSet<u32> {
-    let causes: &[Cause] = match name {
-        "lights" => &[Cause::Lights],
-        "views" => &[Cause::Lights, Cause::Geometry],
-        _ => &[Cause::Geometry],
-    };
-    causes.iter().map(|c| facts::bit(*c)).collect()
 }

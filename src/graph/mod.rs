@@ -189,8 +189,8 @@ pub struct Raster {
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Draw {
-    /// A triangle list of that many vertices.
-    Vertices(Option<u64>),
+    /// A triangle list: the first vertex, and how many.
+    Vertices(Option<(u64, u64)>),
     Points(Option<u64>),
     Indirect {
         resource: ResourceId,

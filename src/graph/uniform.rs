@@ -6,19 +6,20 @@
 //! | `knobs`, `values` | knobs and named values that the stage can see, by name |
 //! | `camera`, `frame`, `view` | see [`super::facts`]; `view` is the element of the `Each(over: Views)` around the stage |
 //! | `element` | the indices of the loops around the stage, by the loops' names |
+//! | `geometry` | `first` and `triangles`: the scene's triangles that the stage goes over |
 //! | `output`, `scene`, `lighting` | `output.width`, …: features; `lighting.total` is the feature `lights.total` |
 
 use super::facts::{self, Slot};
 use crate::document::Cause;
 use crate::expr::Value;
 use crate::kernel::{Binding, FieldKind, Scalar, StructLayout};
-use crate::plan::{ElementOf, Named, Plan, PlannedStage, ScopeId};
+use crate::plan::{self, ElementOf, Named, Plan, PlannedStage, ScopeId};
 use crate::problem::Problem;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Which names the engine fills.
-pub const UNIFORMS: [&str; 8] =
-    ["knobs", "values", "camera", "frame", "view", "element", "output", "lighting"];
+pub const UNIFORMS: [&str; 9] =
+    ["knobs", "values", "camera", "frame", "view", "element", "output", "lighting", "geometry"];
 
 /// A uniform's bytes: constants already in place, the rest copied from the fact table each frame.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -156,6 +157,17 @@ impl Filler<'_> {
             "element" => {
                 let element = self.stage.elements.iter().rev().find(|e| e.name == field)?;
                 Some(Found::Constant(Value::Number(f64::from(element.index))))
+            }
+            "geometry" => {
+                depends.insert(facts::bit(Cause::Geometry));
+                let triangles = plan::triangles(self.features, self.stage.geometry);
+                let number = |n: u64| Value::Number(n as f64);
+                let value = match field {
+                    "first" => triangles.map(|(first, _)| number(first)),
+                    "triangles" => triangles.map(|(_, count)| number(count)),
+                    _ => return None,
+                };
+                Some(Found::Constant(value.unwrap_or(Value::Unknown)))
             }
             "output" => feature("output"),
             "scene" => {

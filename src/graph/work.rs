@@ -21,6 +21,7 @@ pub fn work(graph: &Graph) -> Work {
             start: match &planned.start {
                 plan::Start::Fill(_) => Start::Fill,
                 plan::Start::Covered => Start::Covered,
+                plan::Start::Kept { steady: true, .. } => Start::Steady,
                 plan::Start::Kept { .. } => Start::Kept,
                 plan::Start::Given => Start::Given,
             },

@@ -29,8 +29,9 @@ mod world;
 pub use parts::SCENE_RESOURCES;
 pub use setup::{Elements, LightKind, Setup};
 pub use walk::MAX_STAGES;
+pub use work::triangles;
 
-use crate::document::{Blend, Cause, Compare, Document, ExprText, Knob, Root, Sampler};
+use crate::document::{Blend, Cause, Compare, Document, ExprText, Geometry, Knob, Root, Sampler};
 use crate::expr::Value;
 use crate::library::Library;
 use crate::problem::{Place, Problems, Result};
@@ -64,8 +65,19 @@ pub struct Plan {
     pub parts: BTreeMap<String, String>,
     /// Role → its WGSL module and the scope in which that module's bindings are looked up.
     pub modules: BTreeMap<String, Module>,
+    /// What the scene calls for and the pipeline or a part of it can't do; without a scene, what that could be.
+    pub lacks: Vec<PlannedLack>,
     /// What is wrong but does not stop the plan.
     pub warnings: Vec<crate::problem::Problem>,
+}
+
+/// Something that is not simulated, though the scene calls for it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlannedLack {
+    /// What is done instead.
+    pub what: String,
+    /// Without a scene: when that is so.
+    pub unknown: Option<String>,
 }
 
 #[derive(Clone, Debug)]
@@ -125,6 +137,7 @@ pub enum Start {
     Kept {
         value: f64,
         reset: BTreeSet<Cause>,
+        steady: bool,
     },
     /// Made before the frame, by the engine.
     Given,
@@ -182,6 +195,7 @@ pub struct PlannedStage {
     pub condition: Condition,
     /// The elements of the loops around it, outermost first.
     pub elements: Vec<Element>,
+    pub geometry: Geometry,
     pub work: Work,
     pub order_dependent: Option<String>,
 }
@@ -328,6 +342,9 @@ pub fn expand(document: &Document, library: &Library, setup: &Setup) -> Result<P
             }
         }
     }
+    let lacks = scoped.iter().map(|(player, own)| (&player.document, *own));
+    let lacks = std::iter::once((document, pipeline)).chain(lacks);
+    let lacks = lacks.flat_map(|(document, scope)| walk.lacks(document, scope)).collect();
     let Walk { stages, history, .. } = walk;
     let resources = world.planned_resources(&history);
     let warnings = Problems::check(world.take_problems())?;
@@ -349,6 +366,7 @@ pub fn expand(document: &Document, library: &Library, setup: &Setup) -> Result<P
         scopes: world.scopes,
         stages,
         outputs,
+        lacks,
         warnings,
     })
 }

@@ -180,8 +180,8 @@ pub(super) fn start(declared: Option<&Resource>) -> Start {
     match &start.value {
         document::Start::Fill(value) => Start::Fill(*value),
         document::Start::Covered => Start::Covered,
-        document::Start::Kept { value, reset } => {
-            Start::Kept { value: *value, reset: reset.iter().copied().collect() }
+        document::Start::Kept { value, reset, steady } => {
+            Start::Kept { value: *value, reset: reset.iter().copied().collect(), steady: *steady }
         }
     }
 }

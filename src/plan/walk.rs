@@ -2,8 +2,8 @@
 
 use super::parts::Player;
 use super::world::{Live, World};
-use super::{Condition, Element, Named, PlannedStage, Reference, ResourceId, ScopeId, Work};
-use crate::document::{self, Call, Cause, ExprText, Spanned, Stage};
+use super::{Condition, Element, Named, PlannedLack, PlannedStage, Reference, ResourceId, ScopeId, Work};
+use crate::document::{self, Call, Cause, Document, ExprText, Spanned, Stage};
 use crate::expr::Value;
 use crate::problem::{Place, Problem};
 use std::collections::{BTreeMap, BTreeSet};
@@ -91,12 +91,12 @@ impl<'w, 'a> Walk<'w, 'a> {
             match &stage.value {
                 Stage::Compute(compute) => {
                     self.kernel(&compute.call, &stage.place, around, |walk, scope, bind, around| {
-                        walk.threads(&compute.over, scope, bind, around)
+                        walk.threads(compute, scope, bind, around)
                     });
                 }
                 Stage::Raster(raster) => {
                     self.kernel(&raster.call, &stage.place, around, |walk, scope, _, around| {
-                        let draw = walk.draw(&raster.draw.value, scope, around);
+                        let draw = walk.draw(raster, scope, around);
                         let depth = raster.depth.as_ref().map(|depth| walk.depth(depth, scope, around));
                         let depth = depth.map_or(Some(None), |depth| depth.map(Some));
                         Some(Work::Raster { draw: draw?, depth: depth?, blend: raster.blend })
@@ -164,6 +164,20 @@ impl<'w, 'a> Walk<'w, 'a> {
         inside
     }
 
+    /// What of a file's `lacks` holds.
+    pub fn lacks(&self, document: &Document, scope: ScopeId) -> Vec<PlannedLack> {
+        let lack = |lack: &document::Lack| {
+            let inside = self.inside(Some(&lack.when), &Around::top(scope));
+            let what = lack.what.value.clone();
+            match inside.condition {
+                Condition::Holds => Some(PlannedLack { what, unknown: None }),
+                Condition::Fails(_) => None,
+                Condition::Unknown(when) => Some(PlannedLack { what, unknown: Some(when) }),
+            }
+        };
+        document.lacks.iter().filter_map(lack).collect()
+    }
+
     /// A path that no stage has yet. Names that the file doesn't say get a number where needed.
     fn path(&mut self, name: &Place, text: &str, explicit: bool, around: &Around) -> String {
         let path = format!("{}{text}{}", around.prefix, around.suffix);
@@ -228,6 +242,7 @@ impl<'w, 'a> Walk<'w, 'a> {
             bind,
             condition: around.condition,
             elements: around.elements,
+            geometry: call.geometry,
             work,
             order_dependent: call.order_dependent.clone(),
         });

@@ -2,19 +2,35 @@
 
 use super::walk::{Around, Walk};
 use super::{Condition, DepthUse, Draw, Reference, ScopeId, Threads, Work};
-use crate::document::{self, Depth, ExprText, Extent, Spanned};
+use crate::document::{self, Compute, Depth, ExprText, Extent, Geometry, Raster, Spanned};
+use crate::expr::Value;
 use crate::problem::Place;
 use std::collections::BTreeMap;
+
+/// The first triangle of the geometry, and how many it has; `None` if not known without a scene. The moving ones
+/// follow on the still ones.
+pub fn triangles(features: &BTreeMap<String, Value>, geometry: Geometry) -> Option<(u64, u64)> {
+    let number = |name| match features.get(name)? {
+        Value::Number(number) => Some(*number as u64),
+        _ => None,
+    };
+    let (all, still) = (number("scene.triangles")?, || number("scene.still_triangles"));
+    Some(match geometry {
+        Geometry::All => (0, all),
+        Geometry::Still => (0, still()?),
+        Geometry::Moving => (still()?, all.saturating_sub(still()?)),
+    })
+}
 
 impl Walk<'_, '_> {
     pub fn threads(
         &mut self,
-        over: &Spanned<Extent>,
+        compute: &Compute,
         scope: ScopeId,
         bind: &BTreeMap<String, (Reference, Place)>,
         around: &mut Around,
     ) -> Option<Work> {
-        Some(Work::Compute(match &over.value {
+        Some(Work::Compute(match &compute.over.value {
             Extent::Texels(text) => match bind.get(&text.value) {
                 Some((reference, _)) => Threads::Texels(*reference, text.place.clone()),
                 None => Threads::Texels(self.reference(text, scope, around)?, text.place.clone()),
@@ -30,6 +46,9 @@ impl Walk<'_, '_> {
                 }
                 Threads::Count(threads)
             }
+            Extent::Triangles => {
+                Threads::Count(self.triangles(compute.call.geometry, around).map(|count| [count, 1, 1]))
+            }
             Extent::Indirect { buffer, offset } => {
                 let (reference, offset) = self.indirect(buffer, offset.as_ref(), scope, around)?;
                 Threads::Indirect(reference, offset, buffer.place.clone())
@@ -37,9 +56,12 @@ impl Walk<'_, '_> {
         }))
     }
 
-    pub fn draw(&mut self, draw: &document::Draw, scope: ScopeId, around: &mut Around) -> Option<Draw> {
-        Some(match draw {
-            document::Draw::Scene => Draw::Scene,
+    pub fn draw(&mut self, raster: &Raster, scope: ScopeId, around: &mut Around) -> Option<Draw> {
+        Some(match &raster.draw.value {
+            document::Draw::Scene => {
+                self.triangles(raster.call.geometry, around);
+                Draw::Scene
+            }
             document::Draw::Screen => Draw::Screen,
             document::Draw::Points(count) => Draw::Points(self.count(count, scope, around)),
             document::Draw::Vertices(count) => Draw::Vertices(self.count(count, scope, around)),
@@ -48,6 +70,21 @@ impl Walk<'_, '_> {
                 Draw::Indirect(reference, offset, buffer.place.clone())
             }
         })
+    }
+
+    /// How many triangles the geometry has; with none of them, the stage's condition fails.
+    fn triangles(&self, geometry: Geometry, around: &mut Around) -> Option<u64> {
+        let (_, count) = triangles(&self.world.features, geometry)?;
+        if count == 0 {
+            let which = match geometry {
+                Geometry::All => "triangles",
+                Geometry::Still => "still triangles",
+                Geometry::Moving => "moving triangles",
+            };
+            let none = Condition::Fails(format!("the scene has no {which}"));
+            around.condition = around.condition.and(none);
+        }
+        (count > 0).then_some(count)
     }
 
     /// How many threads, points or vertices; with none of them, the stage's condition fails.

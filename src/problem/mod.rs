@@ -6,6 +6,7 @@
 //! ([`Kind::exit_code`]).
 
 mod render;
+pub mod ron;
 
 use std::fmt;
 use std::ops::Range;

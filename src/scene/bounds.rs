@@ -26,6 +26,11 @@ impl Bounds {
         self.min.as_dvec3().distance(self.max.as_dvec3())
     }
 
+    /// The smallest box around both.
+    pub fn union(&self, other: &Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
     pub fn corners(&self) -> [DVec3; 8] {
         let (min, max) = (self.min.as_dvec3(), self.max.as_dvec3());
         std::array::from_fn(|i| {

@@ -1,11 +1,11 @@
-//! Pinhole cameras.
+//! Cameras: pinholes, and parallel projections.
 
 use super::bounds::Bounds;
 use super::is_near;
 use super::layout::CameraUniform;
 use glam::{DMat4, DVec3, DVec4};
 
-/// A perspective camera. `forward`, `right`, `up` are unit vectors at right angles.
+/// A camera. `forward`, `right`, `up` are unit vectors at right angles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Camera {
     pub name: String,
@@ -13,10 +13,17 @@ pub struct Camera {
     pub forward: DVec3,
     pub right: DVec3,
     pub up: DVec3,
-    /// Full vertical angle in radians, between 0 and π.
-    pub vertical_fov: f64,
+    pub lens: Lens,
     /// Metres; nothing nearer is seen.
     pub near: f64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lens {
+    /// Full vertical angle in radians, between 0 and π.
+    Perspective { vertical_fov: f64 },
+    /// Half the height of the picture in metres; nothing further than `far` metres is seen.
+    Orthographic { half_height: f64, far: f64 },
 }
 
 impl Camera {
@@ -31,7 +38,7 @@ impl Camera {
             forward,
             right,
             up,
-            vertical_fov: DEFAULT_FOV,
+            lens: Lens::DEFAULT,
             near: DEFAULT_NEAR,
         })
     }
@@ -47,7 +54,7 @@ impl Camera {
             forward: -DVec3::Z,
             right: DVec3::X,
             up: DVec3::Y,
-            vertical_fov: DEFAULT_FOV,
+            lens: Lens::DEFAULT,
             near: distance * 1e-3,
         }
     }
@@ -60,14 +67,26 @@ impl Camera {
     }
 
     /// The camera for a picture whose width is `aspect` times its height. Clip space is wgpu's: x right, y up, depth 1
-    /// at `near` and 0 at infinity.
+    /// at `near` and 0 at infinity, or at the far plane of an orthographic one.
     pub fn uniform(&self, aspect: f64) -> CameraUniform {
-        let tan = (self.vertical_fov * 0.5).tan();
+        let near = self.near;
+        // Depth z/w with z = a·z_view + b; w = −z_view or 1; and distance along `forward` as
+        // a quotient of depth d: (x + y·d) / (z + w·d).
+        let half = self.lens.half_height();
+        let (a, b, w, distance) = match self.lens {
+            Lens::Perspective { .. } => {
+                (0.0, near, DVec4::new(0.0, 0.0, -1.0, 0.0), DVec4::new(near, 0.0, 0.0, 1.0))
+            }
+            Lens::Orthographic { far, .. } => {
+                let depth = far - near;
+                (depth.recip(), far / depth, DVec4::W, DVec4::new(far, -depth, 1.0, 0.0))
+            }
+        };
         let projection = DMat4::from_cols(
-            DVec4::X / (tan * aspect),
-            DVec4::Y / tan,
-            DVec4::new(0.0, 0.0, 0.0, -1.0),
-            DVec4::new(0.0, 0.0, self.near, 0.0),
+            DVec4::X / (half * aspect),
+            DVec4::Y / half,
+            DVec4::new(0.0, 0.0, a, w.z),
+            DVec4::new(0.0, 0.0, b, w.w),
         );
         let view_projection = projection * world_to_view(self.position, self.right, self.up, self.forward);
         CameraUniform {
@@ -77,12 +96,25 @@ impl Camera {
             near: self.near as f32,
             forward: self.forward.as_vec3(),
             aspect: aspect as f32,
-            right: (self.right * tan * aspect).as_vec3(),
-            pad_right: 0,
-            up: (self.up * tan).as_vec3(),
+            right: (self.right * half * aspect).as_vec3(),
+            parallel: f32::from(u8::from(matches!(self.lens, Lens::Orthographic { .. }))),
+            up: (self.up * half).as_vec3(),
             pad_up: 0,
+            distance: distance.as_vec4(),
         }
     }
+}
+
+impl Lens {
+    /// Half the height of what is seen at distance 1, in metres.
+    pub fn half_height(&self) -> f64 {
+        match self {
+            Self::Perspective { vertical_fov } => (vertical_fov * 0.5).tan(),
+            Self::Orthographic { half_height, .. } => *half_height,
+        }
+    }
+
+    const DEFAULT: Self = Self::Perspective { vertical_fov: DEFAULT_FOV };
 }
 
 const DEFAULT_FOV: f64 = 50.0 * std::f64::consts::PI / 180.0;

@@ -56,6 +56,7 @@ macro_rules! features {
 
 features! { scene, used;
     "scene.triangles" Number "Number of triangles, each instance counted." = scene.triangles.len() as f64;
+    "scene.still_triangles" Number "Number of triangles that no motion moves." = scene.still_triangles as f64;
     "scene.vertices" Number "Number of vertices." = scene.vertices.len() as f64;
     "scene.materials" Number "Number of materials." = scene.materials.len() as f64;
     "scene.instances" Number "Number of placings of mesh parts." = scene.instances.len() as f64;
@@ -85,7 +86,9 @@ features! { scene, used;
         = used.iter().fold(0.0, |greatest, m| {
             f64::from(m.metallic * range(scene, m.roughness_image, METALNESS)[1]).max(greatest)
         });
-    "scene.moving" Flag "Something in the scene moves." = false;
+    "scene.moving" Flag "Some triangle moves, at some time." = scene.still_triangles < scene.triangles.len();
+    "scene.duration" Number "Seconds until the scene's longest motion starts again; 0 without any."
+        = scene.motion.duration();
     "lights.point" Number "Number of point lights." = lights(scene, POINT);
     "lights.spot" Number "Number of spot lights." = lights(scene, SPOT);
     "lights.directional" Number "Number of directional lights." = lights(scene, DIRECTIONAL);

@@ -155,19 +155,23 @@ pub struct View {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 pub struct CameraUniform {
-    /// World to clip space, depth 1 at `near` and 0 at infinity.
+    /// World to clip space, depth 1 at `near` and 0 at infinity (orthographic: at the far plane).
     pub view_projection: Mat4,
     pub inverse_view_projection: Mat4,
     pub position: Vec3,
     pub near: f32,
-    /// Unit vector. The ray through (x, y) of [−1, 1]², y up, has the direction `forward + x * right + y * up`.
+    /// Unit vector. The ray through (x, y) of [−1, 1]², y up, begins at `position` and has the direction
+    /// `forward + x * right + y * up`; if `parallel`, it begins at `position + x * right + y * up` and goes `forward`.
     pub forward: Vec3,
     /// Width over height.
     pub aspect: f32,
     pub right: Vec3,
-    pub pad_right: u32,
+    /// 1 for an orthographic camera, else 0.
+    pub parallel: f32,
     pub up: Vec3,
     pub pad_up: u32,
+    /// Distance along `forward` from depth d: `(x + y * d) / (z + w * d)`.
+    pub distance: Vec4,
 }
 
 /// WGSL type of a field.
@@ -273,7 +277,7 @@ static VIEW: StructLayout = layout_of!(View as "View" {
 });
 static CAMERA: StructLayout = layout_of!(CameraUniform as "Camera" {
     view_projection: Mat4x4F, inverse_view_projection: Mat4x4F, position: Vec3F, near: F32, forward: Vec3F,
-    aspect: F32, right: Vec3F, up: Vec3F
+    aspect: F32, right: Vec3F, parallel: F32, up: Vec3F, distance: Vec4F
 });
 static TEXEL: StructLayout = StructLayout { name: "u32", stride: 4, fields: &[] };
 

@@ -22,20 +22,23 @@
 mod bounds;
 pub mod buffers;
 mod camera;
+mod course;
 pub mod features;
 pub mod generate;
 mod gltf;
 mod image;
+mod instance;
 pub mod layout;
 mod lights;
 pub mod listing;
+pub mod motion;
 mod setting;
 #[cfg(test)]
 mod tests;
 pub mod views;
 
 pub use bounds::Bounds;
-pub use camera::Camera;
+pub use camera::{Camera, Lens};
 pub use image::Image;
 
 use crate::problem::{Problem, Result};
@@ -56,7 +59,10 @@ pub struct Scene {
     pub vertices: Vec<Vertex>,
     /// As many as vertices, or none where no vertex needs any.
     pub vertex_extras: Vec<VertexExtra>,
+    /// Those that some motion moves come last.
     pub triangles: Vec<Triangle>,
+    /// How many triangles come before those that move.
+    pub still_triangles: usize,
     pub instances: Vec<Instance>,
     pub materials: Vec<Material>,
     pub images: Vec<Image>,
@@ -66,8 +72,9 @@ pub struct Scene {
     pub views: Vec<View>,
     /// At least one.
     pub cameras: Vec<Camera>,
-    /// Of all triangles, in the world.
+    /// Of all triangles, in the world, at all times.
     pub bounds: Bounds,
+    pub motion: motion::Motion,
     /// What the files have and the scene doesn't.
     pub lacks: Vec<Lack>,
 }
@@ -104,7 +111,7 @@ impl fmt::Display for Lack {
 pub fn load(path: &Path) -> Result<Scene> {
     let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
     let scene = match extension.as_str() {
-        "gltf" | "glb" => gltf::load(path)?,
+        "gltf" | "glb" => gltf::load(path, &[])?,
         "ron" => setting::load(path)?,
         _ => {
             let message = format!("`{}` is no scene that voxgi can read", path.display());
@@ -116,8 +123,10 @@ pub fn load(path: &Path) -> Result<Scene> {
 }
 
 impl Scene {
-    /// Adds what follows from the rest: views, a camera if there is none, what views can't show.
+    /// Adds what follows from the rest: where all is at the beginning, views, a camera if there is none, what views
+    /// can't show.
     fn finish(mut self) -> Self {
+        self.pose(0.0);
         self.views = views::fit(&mut self.lights, &self.bounds);
         if self.cameras.is_empty() {
             self.cameras.push(Camera::framing(&self.bounds));
@@ -133,9 +142,9 @@ impl Scene {
         self
     }
 
-    /// The box around all triangles; `None` if a corner is beyond [`FARTHEST`] in the world.
-    fn world_bounds(&self) -> Option<Bounds> {
-        let corners = self.triangles.iter().flat_map(|triangle| {
+    /// The box around these triangles, where they are now; `None` if a corner is beyond [`FARTHEST`] in the world.
+    fn world_bounds(&self, triangles: std::ops::Range<usize>) -> Option<Bounds> {
+        let corners = self.triangles[triangles].iter().flat_map(|triangle| {
             let to_world = self.instances[triangle.instance as usize].to_world;
             let [x, y, z, w] = to_world.map(|column| column.truncate());
             [triangle.a, triangle.b, triangle.c].map(|corner| {

@@ -1,4 +1,4 @@
-//! Settings: RON files that name a glTF file and add lights and cameras to it.
+//! Settings: RON files that name a glTF file and add lights, cameras and motion to it.
 //!
 //! ```ron
 //! Setting(
@@ -11,18 +11,25 @@
 //!         Point(position: (0, 2, 0), intensity: (10, 10, 10)),
 //!         Spot(position: (0, 2, 0), direction: (0, -1, 0), intensity: (10, 10, 10), inner_degrees: 20, outer_degrees: 30),
 //!         Directional(direction: (0.3, -1, 0.2), irradiance: (10, 10, 10)),
+//!         Point(position: (1, 2, 0), intensity: (10, 10, 10), motion: (keys: [(time: 0), (time: 4, offset: (0, 0, 2))])),
 //!     ],
+//!     motion: [(node: "door", axis: (0, 1, 0), pivot: (1, 0, 0), keys: [(time: 0), (time: 2, degrees: 90)])],
 //! )
 //! ```
 //!
 //! The file is looked for beside the setting and below, then likewise in the folder that the environment variable
 //! `VOXGI_SCENES` names. `fov_degrees` is the full vertical angle, the degrees of a spot are half angles of its
-//! light, a direction is the one in which light travels. The setting's lights and cameras come before the file's.
+//! light, a direction is the one in which light travels. Motion is a turn of `degrees` about the `axis` through the
+//! `pivot`, then an `offset`, after the file's own motion and in the world's axes; the pivot is the node's origin, or the
+//! light's position, unless given. Keys are joined by straight lines, or with `interpolation: Step` hold until the next;
+//! after the last the motion starts again. The setting's lights and cameras come before the file's.
 //! `about`, `licence` and `get` are for people: what the model is, whose, and how one comes by it.
 
-use super::camera::Camera;
+use super::camera::{Camera, Lens};
+use super::course::{self, Course, Key, Steps};
 use super::gltf;
 use super::layout::Light;
+use super::motion::Request;
 use super::{Scene, lights};
 use crate::problem::{Place, Problem, Problems, Result, Source};
 use glam::{DVec3, Vec3};
@@ -43,6 +50,8 @@ struct Setting<'a> {
     cameras: Vec<&'a RawValue>,
     #[serde(borrow, default)]
     lights: Vec<&'a RawValue>,
+    #[serde(borrow, default)]
+    motion: Vec<&'a RawValue>,
     #[serde(default)]
     about: String,
     #[serde(default)]
@@ -85,6 +94,8 @@ enum LightEntry {
     Point {
         position: [f64; 3],
         intensity: [f32; 3],
+        #[serde(default)]
+        motion: Option<Course>,
     },
     Spot {
         position: [f64; 3],
@@ -92,11 +103,28 @@ enum LightEntry {
         intensity: [f32; 3],
         inner_degrees: f64,
         outer_degrees: f64,
+        #[serde(default)]
+        motion: Option<Course>,
     },
     Directional {
         direction: [f64; 3],
         irradiance: [f32; 3],
+        #[serde(default)]
+        motion: Option<Course>,
     },
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MotionEntry {
+    node: String,
+    #[serde(default = "course::up")]
+    axis: [f64; 3],
+    #[serde(default)]
+    pivot: Option<[f64; 3]>,
+    #[serde(default)]
+    interpolation: Steps,
+    keys: Vec<Key>,
 }
 
 /// What the setting at `path` says about itself. It need not be right in what it adds.
@@ -118,17 +146,23 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
     let mut keep = |problem| problems.push(problem);
     let cameras: Vec<Camera> =
         setting.cameras.iter().filter_map(|raw| camera(&source, raw).map_err(&mut keep).ok()).collect();
-    let lights: Vec<Light> =
+    let lights: Vec<(Light, Option<Request>)> =
         setting.lights.iter().filter_map(|raw| light(&source, raw).map_err(&mut keep).ok()).collect();
+    let motion: Vec<Request> =
+        setting.motion.iter().filter_map(|raw| motion(&source, raw).map_err(&mut keep).ok()).collect();
     let model = model(&source, &setting, path);
     problems.extend(model.as_ref().err().cloned());
     Problems::check(problems)?;
-    let mut scene = gltf::load(&model?)?;
+    let mut scene = gltf::load(&model?, &motion)?;
     scene.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     scene.files.insert(0, path.to_path_buf());
     let near = (scene.bounds.diagonal() * 1e-4).max(1e-6);
     scene.cameras.splice(0..0, cameras.into_iter().map(|camera| Camera { near, ..camera }));
-    scene.lights.splice(0..0, lights);
+    scene.motion.shift(lights.len(), setting.cameras.len());
+    for (index, (light, request)) in lights.iter().enumerate() {
+        scene.motion.nodes.extend(request.as_ref().map(|request| course::carrying(index, light, request)));
+    }
+    scene.lights.splice(0..0, lights.into_iter().map(|(light, _)| light));
     Ok(scene)
 }
 
@@ -185,28 +219,41 @@ fn camera(source: &Source, raw: &RawValue) -> Result<Camera, Problem> {
     }
     let camera = Camera::looking(&entry.name, eye, look_at - eye, DVec3::Y);
     let camera = camera.ok_or_else(|| wrong("`eye` and `look_at` are the same point"))?;
-    let camera = Camera { vertical_fov: entry.fov_degrees.to_radians(), ..camera };
+    let lens = Lens::Perspective { vertical_fov: entry.fov_degrees.to_radians() };
+    let camera = Camera { lens, ..camera };
     match camera.is_usable() {
         true => Ok(camera),
         false => Err(wrong("the numbers are beyond what a float can hold")),
     }
 }
 
-fn light(source: &Source, raw: &RawValue) -> Result<Light, Problem> {
-    let light = match parse_raw(source, raw)? {
-        LightEntry::Point { position, intensity } => lights::point(position.into(), Vec3::from(intensity)),
-        LightEntry::Spot { position, direction, intensity, inner_degrees, outer_degrees } => lights::spot(
-            position.into(),
-            direction.into(),
-            Vec3::from(intensity),
-            inner_degrees.to_radians(),
-            outer_degrees.to_radians(),
-        ),
-        LightEntry::Directional { direction, irradiance } => {
-            lights::directional(direction.into(), Vec3::from(irradiance))
+fn light(source: &Source, raw: &RawValue) -> Result<(Light, Option<Request>), Problem> {
+    let (light, course) = match parse_raw(source, raw)? {
+        LightEntry::Point { position, intensity, motion } => {
+            (lights::point(position.into(), Vec3::from(intensity)), motion)
+        }
+        LightEntry::Spot { position, direction, intensity, inner_degrees, outer_degrees, motion } => {
+            let [inner, outer] = [inner_degrees, outer_degrees].map(f64::to_radians);
+            let intensity = Vec3::from(intensity);
+            (lights::spot(position.into(), direction.into(), intensity, inner, outer), motion)
+        }
+        LightEntry::Directional { direction, irradiance, motion } => {
+            (lights::directional(direction.into(), Vec3::from(irradiance)), motion)
         }
     };
-    light.map_err(|message| Problem::input("setting-value", message).at(&place(source, raw), "this light"))
+    let at = place(source, raw);
+    let wrong = |message: String| Problem::input("setting-value", message).at(&at, "this light");
+    let request = course
+        .map(|course| course::request(String::new(), course, at.clone()).map_err(&wrong))
+        .transpose()?;
+    Ok((light.map_err(&wrong)?, request))
+}
+
+fn motion(source: &Source, raw: &RawValue) -> Result<Request, Problem> {
+    let MotionEntry { node, axis, pivot, interpolation, keys } = parse_raw(source, raw)?;
+    let at = place(source, raw);
+    course::request(node, Course { axis, pivot, interpolation, keys }, at.clone())
+        .map_err(|message| Problem::input("setting-value", message).at(&at, "this motion"))
 }
 
 /// Where a raw value stands: it is a piece of the source's own text.
@@ -223,7 +270,9 @@ fn parse_raw<T: for<'a> Deserialize<'a>>(source: &Source, raw: &RawValue) -> Res
 
 /// Parses the piece `text` of the source, which starts at byte `offset`.
 fn parse<'a, T: Deserialize<'a>>(source: &Source, text: &'a str, offset: usize) -> Result<T, Problem> {
-    ron::from_str(text).map_err(|error| {
+    // `pivot: (0, 1, 0)` without `Some(…)`, as in pipelines.
+    let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+    options.from_str(text).map_err(|error| {
         let SpannedError { code, span } = error;
         let range = offset + byte(text, span.start)..offset + byte(text, span.end);
         let problem = Problem::input("setting", format!("the setting can't be read: {code}"));

@@ -20,7 +20,8 @@ pub(super) fn check_sizes(work: &Work) -> Result<(), String> {
 /// By item, whether its content must survive from frame to frame: what is kept by itself, and each item with a cell
 /// that is not done again, start and all, in each frame in which a task or the caller reads it.
 pub(super) fn retained(work: &Work, uses: &Uses, reruns: &Reruns) -> Vec<bool> {
-    let mut retained: Vec<bool> = work.items.iter().map(|item| item.start == Start::Kept).collect();
+    let kept = |item: &super::Item| matches!(item.start, Start::Kept | Start::Steady);
+    let mut retained: Vec<bool> = work.items.iter().map(kept).collect();
     for (index, cell) in uses.cells.iter().enumerate() {
         let bits = &reruns.cells[index];
         let outlives = uses.of_cell[index].iter().any(|each| reruns.tasks[each.task] != *bits);

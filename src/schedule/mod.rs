@@ -107,6 +107,8 @@ pub enum Start {
     Covered,
     /// Content goes on from frame to frame.
     Kept,
+    /// As `Kept`; and the tasks that write it, run again without a change, leave it as it was.
+    Steady,
     /// Made outside the schedule; takes none of its memory. Its content goes on from frame to frame, too.
     Given,
 }
@@ -114,7 +116,7 @@ pub enum Start {
 impl Start {
     /// Whether a frame finds what the frame before left.
     fn goes_on(self) -> bool {
-        matches!(self, Self::Kept | Self::Given)
+        matches!(self, Self::Kept | Self::Steady | Self::Given)
     }
 }
 

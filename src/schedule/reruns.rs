@@ -10,7 +10,8 @@
 //! 3. A task that reads the cell before its last write (or writes it too) sees what is gone once the frame ends. It can
 //!    run again only when the cell is written again, so the cell depends on all that it does.
 //! 4. If the content goes on from frame to frame, what such a task sees is the state that earlier frames left,
-//!    which differs from frame to frame: it depends on [`FRAME`].
+//!    which differs from frame to frame: it depends on [`FRAME`]. Not so if the item is promised to be
+//!    [`Steady`](super::Start::Steady): then that state changes only with what its writers depend on.
 //!
 //! Reads after the last write need no more than rule 2, even if the content goes on: writing the same again onto what
 //! was written by the same tasks leaves the same, since a task that only writes does not see what was there.
@@ -24,7 +25,7 @@ use petgraph::algo::kosaraju_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 
 use super::uses::Uses;
-use super::{Cell, FRAME, Options, Work};
+use super::{Cell, FRAME, Options, Start, Work};
 
 /// The bits that make a task or a cell be done again; [`FRAME`] alone if it is among them.
 pub(super) struct Reruns {
@@ -67,7 +68,7 @@ pub(super) fn reruns(work: &Work, uses: &Uses, options: &Options) -> Reruns {
             if each.write || first < each.task || goes_on {
                 depends.add_edge(nodes[each.task], node, ());
             }
-            if early && goes_on {
+            if early && goes_on && work.items[item].start != Start::Steady {
                 bits[each.task].insert(FRAME);
             }
         }

@@ -89,7 +89,7 @@ fn the_scene_as_rays_see_it() {
 /// The number of the nearest triangle on the ray through a point of [−1, 1]², from 1; 0 for none.
 fn first_hit(scene: &Scene, x: f64, y: f64, aspect: f64) -> u32 {
     let camera = &scene.cameras[0];
-    let tan = (camera.vertical_fov * 0.5).tan();
+    let tan = camera.lens.half_height();
     let direction = camera.forward + x * tan * aspect * camera.right + y * tan * camera.up;
     let mut nearest = (f64::INFINITY, 0);
     for (number, triangle) in (1..).zip(&scene.triangles) {

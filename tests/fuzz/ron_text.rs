@@ -54,7 +54,10 @@ impl Corpus {
         let Some(piece) = dice.choice(&pieces).cloned() else { return };
         match dice.usize(..12) {
             0 => text.replace_range(piece, ""),
-            1 => text.insert_str(piece.end, &text[piece.clone()].to_owned()),
+            1 => {
+                let copy = text[piece.clone()].to_owned();
+                text.insert_str(piece.end, &copy);
+            }
             2 | 3 => self.replace_alike(text, piece, dice),
             4 => text.replace_range(piece, NUMBERS[dice.usize(..NUMBERS.len())]),
             5 => {

@@ -250,6 +250,39 @@ fn nodes_without_end() {
     }
 }
 
+/// Animations whose keys are shared, and many things that move by one of them.
+#[test]
+fn motion_without_end() {
+    let keys: Vec<u8> = (0..100_000).flat_map(|i| (i as f32).to_le_bytes()).collect();
+    let mut moved = triangle();
+    let accessors = moved["accessors"].as_array_mut().unwrap();
+    accessors.push(json!({"bufferView": 1, "componentType": 5126, "type": "SCALAR", "count": 100_000}));
+    accessors.push(json!({"componentType": 5126, "type": "VEC3", "count": 100_000}));
+    moved["bufferViews"].as_array_mut().unwrap().push(json!({"buffer": 1, "byteLength": keys.len()}));
+    moved["buffers"].as_array_mut().unwrap().push(json!({"uri": "keys.bin", "byteLength": keys.len()}));
+    let others: &[(&str, &[u8])] = &[("buffer.bin", &corners()), ("keys.bin", &keys)];
+    let channel = |i: usize| json!({"sampler": 0, "target": {"node": i, "path": "translation"}});
+    let animation = |count| json!([{"samplers": [{"input": 1, "output": 2}], "channels": (0..count).map(channel).collect::<Value>()}]);
+    moved["animations"] = animation(1);
+    document("a moving triangle", &moved, others, &Loads);
+    let many = 5_000;
+    moved["nodes"] = json!(vec![json!({"mesh": 0}); many]);
+    moved["scenes"][0]["nodes"] = (0..many).collect();
+    moved["animations"] = animation(many);
+    document(
+        "5,000 moving triangles of 100,000 keys",
+        &moved,
+        others,
+        &Refused("gltf-size", "/animations/0"),
+    );
+    let mut nodes = vec![json!({"mesh": 0}); many];
+    nodes[0]["children"] = (1..many).collect();
+    moved["nodes"] = nodes.into();
+    moved["scenes"][0]["nodes"] = json!([0]);
+    moved["animations"] = animation(1);
+    document("5,000 triangles on a moving node", &moved, others, &Loads);
+}
+
 #[test]
 fn files_elsewhere() {
     let secret = tempfile::tempdir().unwrap();

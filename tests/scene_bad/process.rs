@@ -2,7 +2,6 @@
 
 use serde_json::Value;
 use std::fs::File;
-use std::os::unix::process::ExitStatusExt;
 use std::path::Path;
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
@@ -16,7 +15,7 @@ pub const MOST_TIME: Duration = Duration::from_secs(30);
 pub struct Outcome {
     pub status: ExitStatus,
     pub time: Duration,
-    /// Most resident memory, of the process that started it too, which the system takes for its beginning.
+    /// Most resident memory.
     pub kib: i64,
     /// What `--json` printed.
     pub json: Value,
@@ -69,31 +68,34 @@ pub fn run(mut command: Command) -> Outcome {
     command.stdin(Stdio::null()).stdout(File::create(&out).unwrap()).stderr(File::create(&err).unwrap());
     let start = Instant::now();
     let mut child = command.spawn().unwrap();
-    let id = libc::pid_t::try_from(child.id()).unwrap();
-    loop {
-        let (mut status, mut usage) = (0, std::mem::MaybeUninit::<libc::rusage>::zeroed());
-        // SAFETY: both pointers are to memory of the right type; zeros are a valid `rusage`; the child is ours, and
-        // nobody else waits for it.
-        let (ended, usage) = unsafe {
-            let ended = libc::wait4(id, &raw mut status, libc::WNOHANG, usage.as_mut_ptr());
-            (ended, usage.assume_init())
-        };
-        if ended == id {
-            let json = std::fs::read(&out).unwrap();
-            return Outcome {
-                status: ExitStatus::from_raw(status),
-                time: start.elapsed(),
-                kib: usage.ru_maxrss,
-                json: serde_json::from_slice(&json).unwrap_or_default(),
-                stderr: String::from_utf8_lossy(&std::fs::read(&err).unwrap()).into_owned(),
-            };
+    let mut kib = 0;
+    let status = loop {
+        // The most so far; what is gone with the process is a millisecond.
+        kib = resident(child.id()).unwrap_or(0).max(kib);
+        if let Some(status) = child.try_wait().unwrap() {
+            break status;
         }
-        assert!(ended == 0, "{command:?} is not there");
         if start.elapsed() > MOST_TIME {
             child.kill().unwrap();
+            break child.wait().unwrap();
         }
-        std::thread::sleep(Duration::from_millis(2));
+        std::thread::sleep(Duration::from_millis(1));
+    };
+    let json = std::fs::read(&out).unwrap();
+    Outcome {
+        status,
+        time: start.elapsed(),
+        kib,
+        json: serde_json::from_slice(&json).unwrap_or_default(),
+        stderr: String::from_utf8_lossy(&std::fs::read(&err).unwrap()).into_owned(),
     }
+}
+
+/// Most resident memory so far of a process in KiB; `None` once it has ended.
+fn resident(process: u32) -> Option<i64> {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().strip_suffix(" kB")?.parse().ok()
 }
 
 /// A control: a process that ends badly, one that takes memory, and one that hangs are seen.

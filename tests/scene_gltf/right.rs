@@ -3,8 +3,8 @@
 use crate::documents::{TRIANGLE, data_uri, document, floats, load, triangle};
 use glam::{UVec4, Vec3, Vec4};
 use serde_json::json;
-use voxgi::scene::Scene;
 use voxgi::scene::layout::{DOUBLE_SIDED, UNLIT};
+use voxgi::scene::{Lens, Scene};
 
 /// Corners of all triangles in the world, in order.
 fn world(scene: &Scene) -> Vec<[Vec3; 3]> {
@@ -231,7 +231,8 @@ fn lights_and_cameras_of_nodes() {
     assert!((spot.cos_inner - 0.5f32.cos()).abs() < 1e-6 && (spot.cos_outer - 1f32.cos()).abs() < 1e-6);
     assert_eq!((sun.kind, sun.direction, sun.intensity), (2, Vec3::NEG_Z, Vec3::splat(3.0)));
     let camera = &scene.cameras[0];
-    assert_eq!((camera.name.as_str(), camera.vertical_fov, camera.near), ("eye", 1.0, 0.25));
+    let lens = Lens::Perspective { vertical_fov: 1.0 };
+    assert_eq!((camera.name.as_str(), camera.lens, camera.near), ("eye", lens, 0.25));
     assert!((camera.forward.as_vec3() - Vec3::Y).length() < 1e-6);
     assert!((camera.up.as_vec3() - Vec3::Z).length() < 1e-6);
 }
@@ -260,7 +261,7 @@ fn what_is_lacking_is_said() {
     assert_eq!(
         found,
         [
-            "1 animation is not played",
+            "1 animation of something that is no node is not played",
             "1 primitive of points or lines is left out",
             "2 morphed primitives are drawn at rest",
             "2 second sets of vertex colours are left out",

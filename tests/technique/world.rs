@@ -80,7 +80,7 @@ impl World {
     /// What is seen through the point (x, y) of a square picture of `size` pixels a side, (0, 0) its upper left
     /// corner. The renderer has one sample a pixel, at its centre: `x + 0.5`.
     pub fn seen(&self, x: f64, y: f64, size: u32) -> Option<Hit> {
-        let tan = (self.camera.vertical_fov * 0.5).tan();
+        let tan = self.camera.lens.half_height();
         let [right, down] = [x, y].map(|at| (2.0 * at / f64::from(size) - 1.0) * tan);
         let direction = self.camera.forward + right * self.camera.right - down * self.camera.up;
         self.nearest(self.camera.position, direction.normalize())

@@ -36,7 +36,7 @@ fn sizes_are_computed() {
     assert_eq!(plan.kind("head"), &ResourceKind::Buffer { count: Some(1) });
     assert_eq!(plan.kind("lights"), &ResourceKind::Scene);
     let volume = plan.resources.iter().find(|resource| resource.path == "volume").unwrap();
-    assert_eq!(volume.start, Start::Kept { value: 1.0, reset: [Cause::Camera].into() });
+    assert_eq!(volume.start, Start::Kept { value: 1.0, reset: [Cause::Camera].into(), steady: false });
 }
 
 #[test]

@@ -14,6 +14,7 @@ const MOST_ELEMENTS: u64 = 1 << 25;
 pub fn floats<const N: usize>(file: &File, index: Index<Accessor>) -> Result<Vec<[f32; N]>, Fault> {
     let accessor = get(file, index)?;
     let wanted = match N {
+        1 => Type::Scalar,
         2 => Type::Vec2,
         3 => Type::Vec3,
         _ => Type::Vec4,

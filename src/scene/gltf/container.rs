@@ -73,7 +73,7 @@ fn place(json: &[u8]) -> Option<String> {
 }
 
 /// Some documents are right, but not for the JSON types: whole numbers written as floats, scenes without nodes,
-/// animations that move no node.
+/// animations of what is no node.
 fn parse_tidied(json: &[u8]) -> Option<Root> {
     let mut document: Value = from_slice(json).ok()?;
     make_integers(&mut document);
@@ -81,7 +81,9 @@ fn parse_tidied(json: &[u8]) -> Option<Root> {
         scene.as_object_mut()?.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
     }
     for animation in document.get_mut("animations").and_then(Value::as_array_mut).into_iter().flatten() {
-        *animation = serde_json::json!({"channels": [], "samplers": []});
+        if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
+            channels.retain(|channel| channel.pointer("/target/node").is_some_and(Value::is_u64));
+        }
     }
     from_slice(&serde_json::to_vec(&document).ok()?).ok()
 }

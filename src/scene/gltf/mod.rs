@@ -2,14 +2,15 @@
 //!
 //! Read are: meshes of triangles, strips and fans with positions, normals, tangents, a set of colours and two sets of
 //! texture coordinates (plain, quantized or sparse accessors); node transforms; metallic-roughness materials with their
-//! images and texture transforms; alpha masks; punctual lights; perspective cameras. The rest that a file has is counted
-//! in [`Scene::lacks`].
+//! images and texture transforms; alpha masks; punctual lights; cameras; animations of nodes. The rest that a file has is
+//! counted in [`Scene::lacks`].
 //!
 //! A file is never trusted: lengths, indices and numbers are checked where they are used, URIs stay in the file's
 //! own folder, and what a small file can blow up to has a limit. All faults that are found are reported, each with
 //! the JSON pointer of its place.
 
 mod accessor;
+mod animation;
 mod budget;
 mod census;
 mod container;
@@ -30,14 +31,15 @@ mod vertices;
 
 use super::Scene;
 use super::layout::{Instance, Triangle};
-use crate::problem::Result;
+use super::motion::{self, Carried};
+use crate::problem::{Problem, Problems, Result};
 use file::File;
 pub(super) use file::read;
-use glam::{DMat3, DMat4, DVec3, Vec4};
+use gltf::json::Root;
 use gltf::json::mesh::{Mesh, Primitive};
 use lookup::Needs;
 use mesh::Meshes;
-use nodes::Placed;
+use nodes::{Movers, Placed};
 use notes::{Fault, Notes};
 use std::path::Path;
 use texture::Textures;
@@ -60,8 +62,8 @@ fn understood(extension: &str) -> bool {
     NAMES.contains(&extension) || extension.starts_with("KHR_materials_")
 }
 
-/// The scene in the file at `path`, still without views.
-pub(super) fn load(path: &Path) -> Result<Scene> {
+/// The scene in the file at `path`, with the motion that a setting adds; still without views.
+pub(super) fn load(path: &Path, added: &[motion::Request]) -> Result<Scene> {
     let mut notes = Notes::new(&path.display().to_string());
     let mut file = File::open(path, &mut notes)?;
     let required = file.root.extensions_required.iter().enumerate();
@@ -72,11 +74,14 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
     }
     let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let mut builder = Builder::new(&file, name, &mut notes);
-    for placed in nodes::placed(&file.root, builder.notes) {
-        builder.place(&placed);
-    }
+    let movers = Movers { tracks: animation::tracks(&file, builder.notes), added };
+    let (nodes, motion) = nodes::placed(&file.root, movers, builder.notes);
+    builder.scene.motion = motion;
+    nodes.iter().for_each(|placed| builder.place(placed));
+    named(&file.root, &nodes, added)?;
     let Builder { mut scene, used, meshes, .. } = builder;
     (scene.vertices, scene.vertex_extras) = meshes.finish();
+    scene.sort_moving();
     let mut textures = Textures::default();
     let materials = std::mem::take(&mut file.root.materials);
     for (i, (json, material)) in materials.iter().zip(&mut scene.materials).enumerate() {
@@ -87,12 +92,24 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
     }
     (scene.images, scene.texels) = textures.decode(&file, &mut notes);
     scene.files = file.read;
-    match scene.world_bounds() {
+    match scene.bounds_over_time() {
         Some(bounds) => scene.bounds = bounds,
         None => notes.fault("/nodes", Fault::new("gltf-value", "the scene reaches farther than 10¹⁸ m")),
     }
     scene.lacks = notes.finish()?;
     Ok(scene)
+}
+
+/// Every node that a setting moves must be one of the scene.
+fn named(root: &Root, nodes: &[Placed], added: &[motion::Request]) -> Result<()> {
+    let known = || nodes.iter().filter_map(|placed| root.nodes[placed.index].name.as_deref());
+    let missing = added.iter().filter(|request| !known().any(|name| name == request.node));
+    let problem = |request: &motion::Request| {
+        Problem::input("setting-node", format!("the scene has no node {:?}", request.node))
+            .at(&request.place, "moved here")
+            .suggest(&request.node, known())
+    };
+    Problems::check(missing.map(problem).collect()).map(|_| ())
 }
 
 struct Builder<'a> {
@@ -111,9 +128,6 @@ impl<'a> Builder<'a> {
         let root = &file.root;
         let read = |(i, json)| material::read(json, &format!("/materials/{i}"), notes);
         let materials: Vec<_> = root.materials.iter().enumerate().map(read).collect();
-        for _ in &root.animations {
-            notes.lack("animation", "not played");
-        }
         let used = vec![false; materials.len() + 1];
         let mut needs: Vec<Needs> =
             root.materials.iter().map(|json| Needs::of(&lookup::lookups(json))).collect();
@@ -125,8 +139,14 @@ impl<'a> Builder<'a> {
     /// Adds what a node carries.
     fn place(&mut self, placed: &Placed) {
         let root = &self.file.root;
-        self.scene.lights.extend(punctual::light(root, placed, self.notes));
-        self.scene.cameras.extend(punctual::camera(root, placed, self.notes));
+        if let Some(light) = punctual::light(root, placed, self.notes) {
+            self.carry(placed, Carried::Light(self.scene.lights.len()));
+            self.scene.lights.push(light);
+        }
+        if let Some(camera) = punctual::camera(root, placed, self.notes) {
+            self.carry(placed, Carried::Camera(self.scene.cameras.len()));
+            self.scene.cameras.push(camera);
+        }
         let Some(index) = placed.node.mesh.map(|mesh| mesh.value()) else { return };
         let Some(mesh) = root.meshes.get(index) else {
             let pointer = format!("/nodes/{}/mesh", placed.index);
@@ -147,6 +167,12 @@ impl<'a> Builder<'a> {
             if let Err(fault) = self.place_primitive(placed, mesh, (index, i), primitive) {
                 self.notes.fault(format_args!("/meshes/{index}/primitives/{i}"), fault);
             }
+        }
+    }
+
+    fn carry(&mut self, placed: &Placed, carried: Carried) {
+        if let Some(node) = placed.moving.and_then(|index| self.scene.motion.nodes.get_mut(index)) {
+            node.carries.push(carried);
         }
     }
 
@@ -183,7 +209,8 @@ impl<'a> Builder<'a> {
             self.scene.materials.push(material::default());
         }
         let instance = self.scene.instances.len() as u32;
-        self.scene.instances.push(instance_of(&placed.to_world, material as u32));
+        self.carry(placed, Carried::Instance(instance as usize));
+        self.scene.instances.push(Instance::placed(&placed.to_world, material as u32));
         self.scene.triangles.extend(corners.iter().map(|[a, b, c]| Triangle {
             a: *a,
             b: *b,
@@ -191,31 +218,5 @@ impl<'a> Builder<'a> {
             instance,
         }));
         Ok(())
-    }
-}
-
-fn instance_of(to_world: &DMat4, material: u32) -> Instance {
-    let linear = DMat3::from_mat4(*to_world);
-    let [x, y, z] = linear.to_cols_array_2d().map(DVec3::from);
-    // The inverse transpose is the matrix of cofactors over the determinant.
-    let determinant = linear.determinant();
-    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-    let inverse = cofactors * determinant.recip();
-    let normals = if inverse.is_finite() && inverse.as_mat3().is_finite() {
-        inverse
-    } else {
-        // For a mesh pressed flat there is no inverse, but the cofactors still turn normals right.
-        let largest = cofactors.to_cols_array().into_iter().fold(0.0, |largest: f64, c| largest.max(c.abs()));
-        cofactors * (if largest > 0.0 { largest.recip() } else { 1.0 }) * determinant.signum()
-    };
-    Instance {
-        to_world: to_world
-            .to_cols_array_2d()
-            .map(|[x, y, z, _]| Vec4::new(x as f32, y as f32, z as f32, 0.0)),
-        normal_to_world: [normals.x_axis, normals.y_axis, normals.z_axis]
-            .map(|column| column.as_vec3().extend(0.0)),
-        material,
-        flip: if determinant < 0.0 { -1.0 } else { 1.0 },
-        pad: [0; 2],
     }
 }

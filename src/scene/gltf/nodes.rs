@@ -1,28 +1,40 @@
-//! The node hierarchy: which nodes the scene has, and where they are in the world.
+//! The node hierarchy: which nodes the scene has, where they are in the world, and which of them move.
 
 use super::notes::{Fault, Notes};
+use crate::scene::motion::{self, Motion, MovingNode, Parent, Pose, Track};
 use glam::{DMat4, DQuat, DVec3};
 use gltf::json::{self, Root};
+use std::collections::BTreeMap;
 
 /// A node of the scene that is loaded.
 pub struct Placed<'a> {
     pub index: usize,
     pub node: &'a json::Node,
+    /// At rest.
     pub to_world: DMat4,
+    /// Index of the moving node, if it moves.
+    pub moving: Option<usize>,
 }
 
-/// The nodes of the default scene, parents before children: of scene 0 where the file names none, and all nodes where it
+/// What moves the nodes of a file: its own animations, and what a setting adds.
+pub struct Movers<'a> {
+    /// By node.
+    pub tracks: BTreeMap<usize, Vec<Track>>,
+    pub added: &'a [motion::Request],
+}
+
+/// The nodes of the default scene, and those of them that move; parents before children: of scene 0 where the file names none, and all nodes where it
 /// has no scenes. Loops and nodes with two parents are faults.
-pub fn placed<'a>(root: &'a Root, notes: &mut Notes) -> Vec<Placed<'a>> {
+pub fn placed<'a>(root: &'a Root, mut movers: Movers<'_>, notes: &mut Notes) -> (Vec<Placed<'a>>, Motion) {
     let count = root.nodes.len();
     let parents = parents(root, notes);
     let chosen = root.scene.map_or(0, |scene| scene.value());
-    let mut open: Vec<(usize, DMat4)> = Vec::new();
+    let mut open: Vec<(usize, Above)> = Vec::new();
     match root.scenes.get(chosen) {
         Some(scene) => {
             for (i, node) in scene.nodes.iter().enumerate().rev() {
                 match parents.get(node.value()) {
-                    Some(None) => open.push((node.value(), DMat4::IDENTITY)),
+                    Some(None) => open.push((node.value(), Above::default())),
                     Some(Some(parent)) => {
                         let message = format!("node {node} is no root: it is a child of node {parent}");
                         notes.fault(
@@ -39,14 +51,15 @@ pub fn placed<'a>(root: &'a Root, notes: &mut Notes) -> Vec<Placed<'a>> {
         }
         None if root.scene.is_none() => {
             let roots = (0..count).rev().filter(|node| parents[*node].is_none());
-            open.extend(roots.map(|node| (node, DMat4::IDENTITY)));
+            open.extend(roots.map(|node| (node, Above::default())));
         }
         None => notes.fault("/scene", Fault::beyond("scene", chosen, root.scenes.len())),
     }
     let mut placed = Vec::new();
+    let mut moves = Motion::default();
     let mut seen = vec![false; count];
     // Each node has at most one parent, so only a scene that lists a root twice can reach a node twice.
-    while let Some((index, parent)) = open.pop() {
+    while let Some((index, above)) = open.pop() {
         if std::mem::replace(&mut seen[index], true) {
             notes.fault(
                 format_args!("/scenes/{chosen}/nodes"),
@@ -55,17 +68,63 @@ pub fn placed<'a>(root: &'a Root, notes: &mut Notes) -> Vec<Placed<'a>> {
             continue;
         }
         let node = &root.nodes[index];
-        let local = notes.catch(format_args!("/nodes/{index}"), local(node));
-        let to_world = parent * local.unwrap_or(DMat4::IDENTITY);
+        let local = notes.catch(format_args!("/nodes/{index}"), local(node)).unwrap_or(DMat4::IDENTITY);
+        let to_world = above.to_world * local;
+        let moving = movers.of(index, node, local, above).map(|node| {
+            moves.nodes.push(node);
+            moves.nodes.len() - 1
+        });
         let children = node.children.iter().flatten().rev();
         open.extend(
             children
-                .map(|child| (child.value(), to_world))
+                .map(|child| (child.value(), Above { to_world, moving }))
                 .filter(|(child, _)| parents.get(*child) == Some(&Some(index))),
         );
-        placed.push(Placed { index, node, to_world });
+        placed.push(Placed { index, node, to_world, moving });
     }
-    placed
+    (placed, moves)
+}
+
+/// What stands above a node: its parent's transform at rest, and the parent's index among those that move.
+#[derive(Clone, Copy, Default)]
+struct Above {
+    to_world: DMat4,
+    moving: Option<usize>,
+}
+
+impl Movers<'_> {
+    /// The node as one that moves, if it or its parent does.
+    fn of(&mut self, index: usize, node: &json::Node, local: DMat4, above: Above) -> Option<MovingNode> {
+        let tracks = self.tracks.remove(&index).unwrap_or_default();
+        let request = self.added.iter().find(|request| Some(&request.node) == node.name.as_ref());
+        if tracks.is_empty() && request.is_none() && above.moving.is_none() {
+            return None;
+        }
+        let origin = (above.to_world * local).transform_point3(DVec3::ZERO);
+        Some(MovingNode {
+            parent: above.moving.map_or(Parent::Still(above.to_world), Parent::Moving),
+            rest: Pose::at_rest(node, local),
+            tracks,
+            added: request.map(|request| request.about(origin)),
+            carries: Vec::new(),
+        })
+    }
+}
+
+impl Pose {
+    /// A node's own numbers, which animations replace one by one; of one that has a matrix instead (which can't be animated
+    /// then, but can be carried along), the matrix.
+    fn at_rest(node: &json::Node, local: DMat4) -> Self {
+        if node.matrix.is_some() {
+            return Self::Matrix(local);
+        }
+        let (scale, rotation, translation) = local.to_scale_rotation_translation();
+        Self::Parts {
+            translation,
+            rotation: node.rotation.map_or(rotation, |r| DQuat::from_array(r.0.map(f64::from)).normalize()),
+            scale: node.scale.map_or(scale, vector),
+        }
+    }
 }
 
 /// The parent of each node. Faults: a child that isn't there, a second parent, a loop.

@@ -1,12 +1,13 @@
 //! What a file says of itself, without reading a mesh or a picture.
 
 use super::file::File;
-use super::nodes;
+use super::nodes::{self, Movers};
 use super::notes::Notes;
 use crate::problem::Result;
 use gltf::json::Root;
 use gltf::json::mesh::{Mode, Primitive, Semantic};
 use gltf::json::validation::Checked;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Numbers of things in the scene of a file.
@@ -27,7 +28,8 @@ pub(in crate::scene) fn read(path: &Path) -> Result<Outline> {
     let file = File::open(path, &mut notes)?;
     let root = &file.root;
     let mut outline = Outline { materials: root.materials.len(), ..Outline::default() };
-    for placed in nodes::placed(root, &mut notes) {
+    let still = Movers { tracks: BTreeMap::new(), added: &[] };
+    for placed in nodes::placed(root, still, &mut notes).0 {
         let mesh = placed.node.mesh.and_then(|mesh| root.meshes.get(mesh.value()));
         let triangles = mesh.into_iter().flat_map(|mesh| &mesh.primitives).map(|p| triangles(root, p));
         outline.triangles = triangles.fold(outline.triangles, u64::saturating_add);

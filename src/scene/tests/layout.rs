@@ -24,7 +24,7 @@ const WGSL: &str = "
     }
     struct Camera {
         view_projection: mat4x4f, inverse_view_projection: mat4x4f, position: vec3f, near: f32,
-        forward: vec3f, aspect: f32, right: vec3f, up: vec3f,
+        forward: vec3f, aspect: f32, right: vec3f, parallel: f32, up: vec3f, distance: vec4f,
     }
 ";
 
@@ -82,10 +82,10 @@ fn features_are_those_that_are_named() {
     let kinds: Vec<_> = features.iter().map(|(name, feature)| (*name, feature.kind())).collect();
     let named: Vec<_> = features::NAMES.iter().map(|feature| (feature.name, feature.kind)).collect();
     assert_eq!(kinds, named);
-    let wanted = "scene.triangles scene.vertices scene.materials scene.instances scene.min scene.max \
+    let wanted = "scene.triangles scene.still_triangles scene.vertices scene.materials scene.instances scene.min scene.max \
         scene.emissive scene.max_emission scene.textured scene.roughness_textured scene.normal_mapped scene.second_uv \
         scene.vertex_colors scene.vertex_extras scene.masked scene.double_sided scene.min_roughness scene.max_metallic \
-        scene.moving lights.point lights.spot lights.directional lights.total views.total cameras.total";
+        scene.moving scene.duration lights.point lights.spot lights.directional lights.total views.total cameras.total";
     assert_eq!(named.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" "), wanted);
 }
 

@@ -1,4 +1,4 @@
-use crate::scene::{Bounds, Camera};
+use crate::scene::{Bounds, Camera, Lens};
 use glam::camera::rh;
 use glam::{DVec3, Vec3, Vec4};
 use proptest::prelude::*;
@@ -11,7 +11,8 @@ fn close(a: Vec4, b: Vec4) -> bool {
 #[test]
 fn a_camera_by_hand() {
     let camera = Camera::looking("c", DVec3::new(1.0, 2.0, 3.0), -DVec3::Z, DVec3::Y).unwrap();
-    let uniform = Camera { vertical_fov: FRAC_PI_2, near: 0.5, ..camera }.uniform(2.0);
+    let uniform =
+        Camera { lens: Lens::Perspective { vertical_fov: FRAC_PI_2 }, near: 0.5, ..camera }.uniform(2.0);
     // From (1, 2, 3) the point is 4 to the right, 1 down, 8 ahead. A right angle makes the height 2 at distance 1, and
     // the width twice that.
     let clip = uniform.view_projection * Vec4::new(5.0, 1.0, -5.0, 1.0);
@@ -61,7 +62,7 @@ proptest! {
     ) {
         prop_assume!((to - eye).length() > 0.1 && (to - eye).normalize().y.abs() < 0.99);
         let camera = Camera::looking("c", eye, to - eye, DVec3::Y).unwrap();
-        let uniform = Camera { vertical_fov: fov, near: 0.05, ..camera }.uniform(aspect);
+        let uniform = Camera { lens: Lens::Perspective { vertical_fov: fov }, near: 0.05, ..camera }.uniform(aspect);
         let view = rh::view::look_at_mat4(eye.as_vec3(), to.as_vec3(), Vec3::Y);
         let lens = rh::proj::directx::perspective_infinite_reverse(fov as f32, aspect as f32, 0.05);
         let point = uniform.position + (uniform.forward + x * uniform.right + y * uniform.up) * distance;
@@ -70,5 +71,29 @@ proptest! {
         prop_assert!((clip.x / clip.w - x).abs() < 2e-3 && (clip.y / clip.w - y).abs() < 2e-3);
         let back = uniform.inverse_view_projection * clip;
         prop_assert!((back.truncate() / back.w - point).length() < 1e-2 * (1.0 + distance));
+    }
+}
+
+/// Against glam's own orthographic projection, reversed: near and far change places.
+#[test]
+fn an_orthographic_camera() {
+    let looking =
+        Camera::looking("c", DVec3::new(1.0, 2.0, 3.0), DVec3::new(1.0, -2.0, 0.5), DVec3::Y).unwrap();
+    let lens = Lens::Orthographic { half_height: 2.0, far: 50.0 };
+    let camera = Camera { lens, near: 0.5, ..looking };
+    let uniform = camera.uniform(1.5);
+    let view =
+        rh::view::look_to_mat4(camera.position.as_vec3(), camera.forward.as_vec3(), camera.up.as_vec3());
+    let projection = rh::proj::directx::orthographic(-3.0, 3.0, -2.0, 2.0, 50.0, 0.5);
+    for point in [Vec3::ZERO, Vec3::new(3.0, -4.0, 5.0), Vec3::new(9.0, -12.0, 6.0)] {
+        let (ours, theirs) =
+            (uniform.view_projection * point.extend(1.0), projection * view * point.extend(1.0));
+        assert!(close(ours, theirs), "{ours} {theirs}");
+        // The distance that kernels find from the depth, and the ray that goes there.
+        let c = uniform.distance;
+        let distance = (c.x + c.y * ours.z) / (c.z + c.w * ours.z);
+        let aside = ours.x * uniform.right + ours.y * uniform.up;
+        let found = uniform.position + uniform.parallel * aside + distance * uniform.forward;
+        assert!((found - point).length() < 1e-3, "{found} {point}");
     }
 }

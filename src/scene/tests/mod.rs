@@ -1,6 +1,7 @@
 mod images;
 mod layout;
 mod lens;
+mod motion;
 mod setting;
 mod uri;
 mod views;

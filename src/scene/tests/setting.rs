@@ -31,7 +31,7 @@ fn lights_and_cameras_come_first() {
     assert_eq!(files, ["evening.ron", "cornell-box.glb"]);
     let names: Vec<_> = scene.cameras.iter().map(|camera| camera.name.as_str()).collect();
     assert_eq!(names, ["corner", "cornell"]);
-    assert!((scene.cameras[0].vertical_fov.to_degrees() - 60.0).abs() < 1e-9);
+    assert!((2.0 * scene.cameras[0].lens.half_height().atan().to_degrees() - 60.0).abs() < 1e-9);
     assert_eq!(scene.cameras[0].forward.as_vec3(), Vec3::X);
     let kinds: Vec<_> = scene.lights.iter().map(|light| light.kind).collect();
     assert_eq!(kinds, [0, 1, 2]);
