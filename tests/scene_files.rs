@@ -4,6 +4,7 @@ use glam::Vec3;
 use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
 use voxgi::scene::layout::{DIRECTIONAL, POINT};
+use voxgi::scene::listing::list;
 use voxgi::scene::{Scene, generate, load};
 
 /// The folder of `VOXGI_SCENES`; without it the test is skipped, or fails if `VOXGI_REQUIRE_SCENES` is 1.
@@ -143,7 +144,8 @@ fn settings_of_the_repository() {
     assert!((2.0 * sponza.cameras[0].lens.half_height().atan().to_degrees() - 70.0).abs() < 1e-9);
     let sibenik = load(&own("sibenik.ron")).unwrap();
     assert_eq!((sibenik.triangles.len(), sibenik.lights[0].kind, sibenik.views.len()), (73_564, POINT, 6));
-    for scene in [sponza, sibenik] {
+    let others = ["sponza-dabrovic", "living-room"].map(|name| load(&own(&format!("{name}.ron"))).unwrap());
+    for scene in [sponza, sibenik].iter().chain(&others) {
         let (eye, bounds) = (scene.cameras[0].position.as_vec3(), scene.bounds);
         assert!(eye.cmpge(bounds.min).all() && eye.cmple(bounds.max).all(), "the camera is inside");
     }
@@ -179,4 +181,29 @@ fn bad_files_do_no_harm() {
         }
     }
     assert!(loaded > 80 && refused > 50, "{loaded} loaded, {refused} refused");
+}
+
+/// Each setting says whose its model is and how one comes by it, with and without the model.
+#[test]
+fn settings_say_how_to_get_their_models() {
+    let entries = list(&own("")).unwrap();
+    let mut settings = 0;
+    for (path, entry) in entries {
+        let entry = entry.unwrap_or_else(|problems| panic!("{problems}"));
+        let Some(about) = entry.about else { continue };
+        settings += 1;
+        assert!(!about.about.is_empty() && !about.licence.is_empty() && !about.get.is_empty(), "{path:?}");
+        assert_eq!(entry.outline.is_some(), about.model.is_some(), "{path:?}");
+        assert!(about.cameras > 0 && about.lights > 0, "{path:?}");
+        // Without the model, the message tells.
+        let folder = tempfile::tempdir().unwrap();
+        let text = std::fs::read_to_string(&path).unwrap().replacen(&about.gltf, "there-is-none.glb", 1);
+        std::fs::write(folder.path().join("alone.ron"), text).unwrap();
+        let problems = load(&folder.path().join("alone.ron")).map(|_| ()).unwrap_err();
+        assert!(
+            problems.iter().any(|p| p.help.as_ref().is_some_and(|help| help.contains(&about.get))),
+            "{problems}"
+        );
+    }
+    assert_eq!(settings, 6);
 }

@@ -13,6 +13,7 @@ mod profile;
 mod render;
 mod run;
 mod savings;
+mod scenes;
 
 use crate::library::Library;
 use crate::play;
@@ -46,6 +47,8 @@ enum Command {
     Kernels(kernels::KernelsArgs),
     /// List adapters and what each can do.
     Devices(devices::DevicesArgs),
+    /// List scenes, how to get those whose models are not there, and what a scene has.
+    Scenes(scenes::ScenesArgs),
     /// Write the generated scenes.
     Generate(generate::GenerateArgs),
 }
@@ -203,6 +206,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => args.json,
         Command::Kernels(args) => args.json,
         Command::Devices(args) => args.json,
+        Command::Scenes(args) => args.json,
         Command::Generate(_) => false,
     };
     let result = match &cli.command {
@@ -211,6 +215,7 @@ pub fn main() -> ExitCode {
         Command::Check(args) => check::run(args),
         Command::Kernels(args) => kernels::run(args),
         Command::Devices(args) => devices::run(args),
+        Command::Scenes(args) => scenes::run(args),
         Command::Generate(args) => generate::run(args),
     };
     match result {

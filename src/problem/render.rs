@@ -92,13 +92,27 @@ impl Diagnostic for Report {
     }
 }
 
+/// Longest line of a source that is drawn, in bytes. miette panics from column 65,536 on, and nobody reads that far.
+const LONGEST_LINE: usize = 2000;
+
 impl Problem {
+    /// The problem with places in sources of very long lines named in its message instead of drawn.
+    fn drawable(&self) -> Self {
+        let is_drawable = |place: &Place| place.source.text().lines().all(|line| line.len() <= LONGEST_LINE);
+        let mut problem = self.clone();
+        problem.labels.retain(|(place, _)| is_drawable(place));
+        for (place, text) in self.labels.iter().filter(|(place, _)| !is_drawable(place)) {
+            problem.message += &format!(" ({place:?}: {text})");
+        }
+        problem
+    }
+
     /// The message with its pieces of source, as a terminal shows it. `color`: with ANSI colours and box drawing.
     pub fn render(&self, color: bool) -> String {
         let theme = if color { GraphicalTheme::unicode() } else { GraphicalTheme::unicode_nocolor() };
         let handler = GraphicalReportHandler::new_themed(theme).with_width(110).with_links(false);
         let mut text = String::new();
-        match handler.render_report(&mut text, &Report::new(self)) {
+        match handler.render_report(&mut text, &Report::new(&self.drawable())) {
             Ok(()) => text,
             Err(_) => format!("{}: {}", self.code, self.message),
         }

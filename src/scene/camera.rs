@@ -1,6 +1,7 @@
 //! Cameras: pinholes, and parallel projections.
 
 use super::bounds::Bounds;
+use super::is_near;
 use super::layout::CameraUniform;
 use glam::{DMat4, DVec3, DVec4};
 
@@ -56,6 +57,13 @@ impl Camera {
             lens: Lens::DEFAULT,
             near: distance * 1e-3,
         }
+    }
+
+    /// Whether its numbers are such that f32 can hold the camera of a square picture.
+    pub fn is_usable(&self) -> bool {
+        let uniform = self.uniform(1.0);
+        let [to_clip, from_clip] = [uniform.view_projection, uniform.inverse_view_projection];
+        to_clip.is_finite() && from_clip.is_finite() && is_near(uniform.position) && uniform.near > 0.0
     }
 
     /// The camera for a picture whose width is `aspect` times its height. Clip space is wgpu's: x right, y up, depth 1

@@ -1,5 +1,6 @@
 //! Lights from checked numbers, the same for glTF files and settings. Errors are sentences that name the number.
 
+use super::is_near;
 use super::layout::{DIRECTIONAL, Light, POINT, SPOT};
 use glam::{DVec3, Vec3};
 use std::f64::consts::FRAC_PI_2;
@@ -7,7 +8,7 @@ use std::f64::consts::FRAC_PI_2;
 /// `intensity`: W/sr.
 pub fn point(position: DVec3, intensity: Vec3) -> Result<Light, String> {
     Ok(Light {
-        position: finite("position", position)?,
+        position: near(position)?,
         kind: POINT,
         direction: Vec3::ZERO,
         first_view: 0,
@@ -48,9 +49,9 @@ pub fn directional(direction: DVec3, irradiance: Vec3) -> Result<Light, String> 
     Ok(Light { kind: DIRECTIONAL, direction: unit(direction)?, ..point(DVec3::ZERO, irradiance)? })
 }
 
-fn finite(what: &str, v: DVec3) -> Result<Vec3, String> {
-    let v = v.as_vec3();
-    if v.is_finite() { Ok(v) } else { Err(format!("the {what} is not finite")) }
+fn near(position: DVec3) -> Result<Vec3, String> {
+    let position = position.as_vec3();
+    if is_near(position) { Ok(position) } else { Err("the position is farther than 10¹⁸ m".to_owned()) }
 }
 
 fn power(v: Vec3) -> Result<Vec3, String> {

@@ -18,6 +18,7 @@
 //! | [`environment`] | light from far away |
 //! | [`features`] | what conditions can ask about a scene |
 //! | [`generate`] | scenes made from published numbers |
+//! | [`listing`] | what scenes a folder has |
 
 mod bounds;
 pub mod buffers;
@@ -31,6 +32,7 @@ mod image;
 mod instance;
 pub mod layout;
 mod lights;
+pub mod listing;
 pub mod motion;
 mod setting;
 #[cfg(test)]
@@ -46,6 +48,9 @@ use environment::Environment;
 use layout::{Instance, Light, Material, Triangle, Vertex, VertexExtra, View};
 use std::fmt;
 use std::path::{Path, PathBuf};
+
+/// How far from the origin a scene may reach in metres, lights and cameras with it: f32 holds the squares of distances.
+pub const FARTHEST: f32 = 1e18;
 
 /// A scene as loaded. Every index in it is in range, every number finite.
 #[derive(Clone, Debug, Default)]
@@ -96,7 +101,8 @@ impl fmt::Display for Lack {
                 let split =
                     [" of ", " in ", " with", " that "].iter().filter_map(|w| self.what.find(w)).min();
                 let (noun, rest) = self.what.split_at(split.unwrap_or(self.what.len()));
-                write!(f, "{count} {noun}s{rest} are {}", self.instead)
+                let plural = if noun.ends_with("sh") { "es" } else { "s" };
+                write!(f, "{count} {noun}{plural}{rest} are {}", self.instead)
             }
         }
     }
@@ -140,7 +146,7 @@ impl Scene {
         self
     }
 
-    /// The box around these triangles, where they are now; `None` if a corner is not finite in the world.
+    /// The box around these triangles, where they are now; `None` if a corner is beyond [`FARTHEST`] in the world.
     fn world_bounds(&self, triangles: std::ops::Range<usize>) -> Option<Bounds> {
         let corners = self.triangles[triangles].iter().flat_map(|triangle| {
             let to_world = self.instances[triangle.instance as usize].to_world;
@@ -150,8 +156,13 @@ impl Scene {
                 x * p.x + y * p.y + z * p.z + w
             })
         });
-        let mut finite = true;
-        let bounds = Bounds::around(corners.inspect(|corner| finite &= corner.is_finite()));
-        finite.then_some(bounds.unwrap_or_default())
+        let mut near = true;
+        let bounds = Bounds::around(corners.inspect(|corner| near &= is_near(*corner)));
+        near.then_some(bounds.unwrap_or_default())
     }
+}
+
+/// Whether all coordinates are within [`FARTHEST`]; NaN is not.
+fn is_near(point: glam::Vec3) -> bool {
+    point.abs().cmple(glam::Vec3::splat(FARTHEST)).all()
 }

@@ -5,7 +5,7 @@
 //! beyond its last key a motion starts again.
 
 use super::layout::{Instance, Light};
-use super::{Camera, views};
+use super::{Camera, is_near, views};
 use super::{Scene, bounds::Bounds};
 use crate::problem::Place;
 use glam::{DMat4, DQuat, DVec3, DVec4};
@@ -314,17 +314,17 @@ impl Scene {
     pub(super) fn bounds_over_time(&self) -> Option<Bounds> {
         let still = self.world_bounds(0..self.still_triangles)?;
         let boxes = self.moving_boxes();
-        let mut corners = Vec::new();
+        let mut moving: Option<Bounds> = None;
         for time in if boxes.is_empty() { Vec::new() } else { self.motion.instants() } {
             let all = self.motion.to_world(time);
             for (node, bounds) in &boxes {
-                corners.extend(bounds.corners().map(|corner| all[*node].transform_point3(corner).as_vec3()));
+                let corners = bounds.corners().map(|corner| all[*node].transform_point3(corner).as_vec3());
+                if !corners.iter().all(|corner| is_near(*corner)) {
+                    return None;
+                }
+                moving = moving.into_iter().chain(Bounds::around(corners)).reduce(|a, b| a.union(&b));
             }
         }
-        if !corners.iter().all(|corner| corner.is_finite()) {
-            return None;
-        }
-        let moving = Bounds::around(corners);
         let all = [(self.still_triangles > 0).then_some(still), moving];
         Some(all.into_iter().flatten().reduce(|a, b| a.union(&b)).unwrap_or_default())
     }

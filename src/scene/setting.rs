@@ -3,6 +3,9 @@
 //! ```ron
 //! Setting(
 //!     gltf: "hall.glb",
+//!     about: "The hall at noon.",
+//!     licence: "CC BY 4.0, by its author",
+//!     get: "npm pack hall",
 //!     cameras: [(name: "nave", eye: (-15, -10, 0), look_at: (5, -8, 0), fov_degrees: 65)],
 //!     lights: [
 //!         Point(position: (0, 2, 0), intensity: (10, 10, 10)),
@@ -20,6 +23,7 @@
 //! `pivot`, then an `offset`, after the file's own motion and in the world's axes; the pivot is the node's origin, or the
 //! light's position, unless given. Keys are joined by straight lines, or with `interpolation: Step` hold until the next;
 //! after the last the motion starts again. The setting's lights and cameras come before the file's.
+//! `about`, `licence` and `get` are for people: what the model is, whose, and how one comes by it.
 
 use super::camera::{Camera, Lens};
 use super::course::{self, Course, Key, Steps};
@@ -48,7 +52,32 @@ struct Setting<'a> {
     lights: Vec<&'a RawValue>,
     #[serde(borrow, default)]
     motion: Vec<&'a RawValue>,
+    #[serde(default)]
+    about: String,
+    #[serde(default)]
+    licence: String,
+    #[serde(default)]
+    get: String,
 }
+
+/// What a setting says for people, and what it names. Texts may be empty.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct About {
+    pub about: String,
+    pub licence: String,
+    /// How one comes by the model.
+    pub get: String,
+    /// The model as the setting names it.
+    pub gltf: String,
+    /// The model's file; `None` if it is not there.
+    pub model: Option<PathBuf>,
+    /// How many lights and cameras the setting adds.
+    pub lights: usize,
+    pub cameras: usize,
+}
+
+/// Largest setting that is read, in bytes: 1 MiB.
+const MOST_BYTES: u64 = 1 << 20;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -98,13 +127,20 @@ struct MotionEntry {
     keys: Vec<Key>,
 }
 
+/// What the setting at `path` says about itself. It need not be right in what it adds.
+pub(super) fn about(path: &Path) -> Result<About> {
+    let source = read(path)?;
+    let setting: Setting = parse(&source, source.text(), 0)?;
+    let gltf = parse_raw::<String>(&source, setting.gltf)?;
+    let model = candidates(&source, setting.gltf, path)?.into_iter().find(|path| path.is_file());
+    let (lights, cameras) = (setting.lights.len(), setting.cameras.len());
+    let Setting { about, licence, get, .. } = setting;
+    Ok(About { about, licence, get, gltf, model, lights, cameras })
+}
+
 /// The scene of the setting at `path`, still without views.
 pub(super) fn load(path: &Path) -> Result<Scene> {
-    let content = gltf::read(path)?;
-    let name = path.display().to_string();
-    let text = String::from_utf8(content)
-        .map_err(|_| Problem::input("setting", format!("`{name}` is no text: it is not UTF-8")))?;
-    let source = Source::new(name, text);
+    let source = read(path)?;
     let setting: Setting = parse(&source, source.text(), 0)?;
     let mut problems = Vec::new();
     let mut keep = |problem| problems.push(problem);
@@ -114,7 +150,7 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
         setting.lights.iter().filter_map(|raw| light(&source, raw).map_err(&mut keep).ok()).collect();
     let motion: Vec<Request> =
         setting.motion.iter().filter_map(|raw| motion(&source, raw).map_err(&mut keep).ok()).collect();
-    let model = model(&source, setting.gltf, path);
+    let model = model(&source, &setting, path);
     problems.extend(model.as_ref().err().cloned());
     Problems::check(problems)?;
     let mut scene = gltf::load(&model?, &motion)?;
@@ -130,25 +166,43 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
     Ok(scene)
 }
 
-/// The path of the glTF file that the setting at `path` names.
-fn model(source: &Source, raw: &RawValue, path: &Path) -> Result<PathBuf, Problem> {
-    let place = place(source, raw);
+fn read(path: &Path) -> Result<Source> {
+    let name = path.display().to_string();
+    let wrong = |why: &str| Problem::input("setting", format!("`{name}` is no setting: {why}"));
+    if path.metadata().is_ok_and(|metadata| metadata.len() > MOST_BYTES) {
+        return Err(wrong("it is larger than 1 MiB").into());
+    }
+    let text = String::from_utf8(gltf::read(path)?).map_err(|_| wrong("it is not UTF-8"))?;
+    Ok(Source::new(name, text))
+}
+
+/// Where the model may be that the setting at `path` names by `raw`, the best place first.
+fn candidates(source: &Source, raw: &RawValue, path: &Path) -> Result<Vec<PathBuf>, Problem> {
     let name: String = parse_raw(source, raw)?;
     let Some(relative) = gltf::uri::inside(&name) else {
         return Err(Problem::input(
             "setting-gltf",
             format!("{name:?} is not a path below the setting's folder"),
         )
-        .at(&place, "absolute, or leads out")
+        .at(&place(source, raw), "absolute, or leads out")
         .help(format!("name a file beside the setting, or in the folder of {SCENES}, without `..`")));
     };
     let beside = path.parent().map(|folder| folder.join(&relative));
     let elsewhere = std::env::var_os(SCENES).map(|folder| Path::new(&folder).join(&relative));
-    let found = beside.into_iter().chain(elsewhere).find(|path| path.is_file());
+    Ok(beside.into_iter().chain(elsewhere).collect())
+}
+
+/// The glTF file that the setting at `path` names.
+fn model(source: &Source, setting: &Setting, path: &Path) -> Result<PathBuf, Problem> {
+    let found = candidates(source, setting.gltf, path)?.into_iter().find(|path| path.is_file());
     found.ok_or_else(|| {
-        Problem::input("setting-gltf", format!("there is no {name:?} beside the setting, nor in {SCENES}"))
-            .at(&place, "not found")
-            .help(format!("set {SCENES} to the folder that has it"))
+        let place = place(source, setting.gltf);
+        let message = format!("there is no {} beside the setting, nor in {SCENES}", place.text());
+        let help = match setting.get.as_str() {
+            "" => format!("set {SCENES} to the folder that has it"),
+            get => format!("set {SCENES} to the folder that has it; to get it: {get}"),
+        };
+        Problem::input("setting-gltf", message).at(&place, "not found").help(help)
     })
 }
 
@@ -165,7 +219,12 @@ fn camera(source: &Source, raw: &RawValue) -> Result<Camera, Problem> {
     }
     let camera = Camera::looking(&entry.name, eye, look_at - eye, DVec3::Y);
     let camera = camera.ok_or_else(|| wrong("`eye` and `look_at` are the same point"))?;
-    Ok(Camera { lens: Lens::Perspective { vertical_fov: entry.fov_degrees.to_radians() }, ..camera })
+    let lens = Lens::Perspective { vertical_fov: entry.fov_degrees.to_radians() };
+    let camera = Camera { lens, ..camera };
+    match camera.is_usable() {
+        true => Ok(camera),
+        false => Err(wrong("the numbers are beyond what a float can hold")),
+    }
 }
 
 fn light(source: &Source, raw: &RawValue) -> Result<(Light, Option<Request>), Problem> {

@@ -158,6 +158,38 @@ fn links_do_not_lead_out() {
     );
 }
 
+/// The squares of their components are too small for f32.
+#[test]
+fn tiny_normals_get_unit_length() {
+    for length in [1e-45_f32, 1e-40, 1e-23, 1e19, 3e38] {
+        let normals = floats(&[[length, length, 0.]; 3].concat());
+        let lists = [("POSITION", floats(&TRIANGLE), 5126, "VEC3", 3), ("NORMAL", normals, 5126, "VEC3", 3)];
+        let normal = load(&document(&lists)).unwrap().vertices[0].normal;
+        assert!((normal.length() - 1.0).abs() < 1e-6 && normal.x == normal.y, "{length}: {normal}");
+    }
+}
+
+/// Cameras and lights whose numbers f32 can't carry on with.
+#[test]
+fn vast_cameras_and_lights_are_refused() {
+    let camera = |yfov: f64, znear: f64| json!([{"type": "perspective", "perspective": {"yfov": yfov, "znear": znear}}]);
+    let lights = json!({"KHR_lights_punctual": {"lights": [{"type": "point"}]}});
+    let seen = with(triangle(), "/nodes/0", json!({"mesh": 0, "camera": 0}));
+    assert!(load(&with(seen.clone(), "/cameras", camera(1.0, 0.1))).is_ok());
+    refused(&with(seen.clone(), "/cameras", camera(1e-40, 0.1)), "gltf-camera", "/cameras/0");
+    refused(&with(seen.clone(), "/cameras", camera(1.0, 1e-42)), "gltf-camera", "/cameras/0");
+    let nodes = |node: Value| with(triangle(), "/nodes", json!([{"mesh": 0}, node]));
+    let far = |node: Value| with(nodes(node), "/scenes/0/nodes", json!([0, 1]));
+    let camera_far = far(json!({"camera": 0, "translation": [1e19, 0, 0]}));
+    refused(&with(camera_far, "/cameras", camera(1.0, 0.1)), "gltf-camera", "/cameras/0");
+    let light = json!({"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [0, 1e19, 0]});
+    refused(
+        &with(far(light), "/extensions", lights),
+        "gltf-light",
+        "/extensions/KHR_lights_punctual/lights/0",
+    );
+}
+
 /// A few bytes that ask for a lot: 20,000 nodes with 20,000 triangles each.
 #[test]
 fn small_files_stay_small() {

@@ -86,8 +86,13 @@ fn elements<T: Copy>(
 }
 
 fn get(file: &File, index: Index<Accessor>) -> Result<&Accessor, Fault> {
+    /// Bytes that an element becomes while it turns from a list into vertices or corners.
+    const ELEMENT: u64 = 256;
     let accessors = &file.root.accessors;
-    accessors.get(index.value()).ok_or_else(|| Fault::beyond("accessor", index.value(), accessors.len()))
+    let accessor = accessors.get(index.value());
+    let accessor = accessor.ok_or_else(|| Fault::beyond("accessor", index.value(), accessors.len()))?;
+    file.budget.pass(accessor.count.0.saturating_mul(ELEMENT))?;
+    Ok(accessor)
 }
 
 fn valid<'a, T>(checked: &'a Checked<T>, index: Index<Accessor>, field: &str) -> Result<&'a T, Fault> {

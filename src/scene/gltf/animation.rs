@@ -71,6 +71,8 @@ fn track(
         let list = floats::<3>(file, sampler.output)?;
         list.into_iter().map(|[x, y, z]| DVec4::new(x.into(), y.into(), z.into(), 0.0)).collect()
     };
+    // Many channels may share one list of times.
+    file.budget.hold((times.len() * size_of::<f64>() + values.len() * size_of::<DVec4>()) as u64)?;
     let keys = checked(Keys { interpolation, times, values }, property)?;
     Ok(Some(Track { property, duration: keys.end(), keys }))
 }

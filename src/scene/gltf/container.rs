@@ -2,7 +2,8 @@
 
 use super::notes::Fault;
 use gltf::json::deserialize::from_slice;
-use gltf::json::{Error, Root, Value};
+use gltf::json::{Root, Value};
+use serde_path_to_error::Segment;
 
 /// The JSON text and the binary chunk of a file's content; the content itself if it is no binary glTF.
 pub fn split(content: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
@@ -44,9 +45,31 @@ fn word(content: &[u8], at: usize) -> Option<u32> {
     content.get(at..)?.first_chunk().copied().map(u32::from_le_bytes)
 }
 
-/// The document in a JSON text.
-pub fn parse(json: &[u8]) -> Result<Root, Error> {
-    from_slice(json).or_else(|error| parse_tidied(json).ok_or(error))
+/// Longest text that is tidied, in bytes: as values of any type, a text takes many times its size.
+const MOST_TIDIED: usize = 8 << 20;
+
+/// The document in a JSON text, or what is wrong, with the JSON pointer of where.
+pub fn parse(json: &[u8]) -> Result<Root, String> {
+    from_slice(json).or_else(|error| {
+        let tidied = if json.len() <= MOST_TIDIED { parse_tidied(json) } else { None };
+        tidied.ok_or_else(|| match place(json) {
+            Some(pointer) => format!("at {pointer}: {error}"),
+            None => error.to_string(),
+        })
+    })
+}
+
+/// JSON pointer of the place that keeps a text from being a document.
+fn place(json: &[u8]) -> Option<String> {
+    let mut text = serde_json::Deserializer::from_slice(json);
+    let error = serde_path_to_error::deserialize::<_, Root>(&mut text).err()?;
+    let name = |segment: &Segment| match segment {
+        Segment::Seq { index } => format!("/{index}"),
+        Segment::Map { key } => format!("/{}", key.replace('~', "~0").replace('/', "~1")),
+        Segment::Enum { .. } | Segment::Unknown => String::new(),
+    };
+    let pointer: String = error.path().iter().map(name).collect();
+    (!pointer.is_empty()).then_some(pointer)
 }
 
 /// Some documents are right, but not for the JSON types: whole numbers written as floats, scenes without nodes,

@@ -3,8 +3,10 @@
 //! Nothing here trusts a length. A file is read whole, if it is a regular file of at most [`MOST_BYTES`]; a buffer must
 //! have the bytes that it promises; only [`File::slice`] hands any out.
 
+use super::budget::Budget;
+use super::census::census;
 use super::container::{parse, split};
-use super::notes::{Fault, Notes};
+use super::notes::{Fault, Notes, brief};
 use super::uri::{Target, resolve};
 use crate::problem::{Problem, Problems};
 use gltf::json::{Index, Root, buffer};
@@ -22,6 +24,7 @@ pub struct File {
     buffers: Vec<Option<Vec<u8>>>,
     /// Everything that was read.
     pub read: Vec<PathBuf>,
+    pub budget: Budget,
 }
 
 impl File {
@@ -29,16 +32,25 @@ impl File {
         let name = path.display();
         let content = read(path)?;
         let (json, binary) = split(&content).map_err(|fault| fault.at(&name.to_string(), "the start"))?;
-        let root = parse(json).map_err(|error| {
-            Problem::input("gltf-json", format!("`{name}` is not a glTF document: {error}"))
+        let no_document = |error: String| {
+            let message = format!("`{name}` is not a glTF document: {}", brief(&error));
+            Problem::input("gltf-json", message)
                 .help("a .glb file begins with `glTF`, and a .gltf file is JSON; export it again")
-        })?;
+        };
+        let budget = Budget::default();
+        budget.read(content.len() as u64);
+        let taken = census(json)
+            .map_err(|error| no_document(error.to_string()))?
+            .saturating_add(content.len() as u64);
+        budget.hold(taken).map_err(|fault| fault.at(&name.to_string(), "the whole document"))?;
+        let root = parse(json).map_err(no_document)?;
         if !root.asset.version.starts_with("2.") {
-            let message = format!("`{name}` is glTF {:?}; only 2.x is understood", root.asset.version);
+            let version = brief(&root.asset.version);
+            let message = format!("`{name}` is glTF {version:?}; only 2.x is understood");
             return Err(Problem::input("gltf-version", message).into());
         }
         let folder = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
-        let mut file = Self { root, folder, buffers: Vec::new(), read: vec![path.to_path_buf()] };
+        let mut file = Self { root, folder, buffers: Vec::new(), read: vec![path.to_path_buf()], budget };
         for index in 0..file.root.buffers.len() {
             let data = file.buffer(index, binary);
             let data = notes.catch(format_args!("/buffers/{index}"), data);
@@ -58,7 +70,10 @@ impl File {
                 let uri = uri.clone();
                 self.fetch(&uri)?
             }
-            (None, Some(binary)) if index == 0 => binary.to_vec(),
+            (None, Some(binary)) if index == 0 => {
+                self.budget.hold(binary.len() as u64)?;
+                binary.to_vec()
+            }
             // Some extensions have buffers without content, for readers that don't know them. Using one is a fault.
             (None, _) => return Ok(None),
         };
@@ -76,6 +91,7 @@ impl File {
 
     /// The bytes that a URI stands for.
     pub fn fetch(&mut self, uri: &str) -> Result<Vec<u8>, Fault> {
+        self.budget.hold(uri.len() as u64)?;
         let relative = match resolve(uri)? {
             Target::Data(data) => return Ok(data),
             Target::File(relative) => relative,
@@ -90,11 +106,14 @@ impl File {
         if !path.canonicalize().map_err(|error| fault(&error))?.starts_with(&folder) {
             return Err(fault(&"it is a link out of the scene's folder"));
         }
-        let data = read_bounded(&path).map_err(|error| fault(&error))?;
+        let length = fs::metadata(&path).map_err(|error| fault(&error))?.len();
+        // A file that is named many times is read as often, but is one file.
         if !self.read.contains(&path) {
-            self.read.push(path);
+            self.budget.read(length);
+            self.read.push(path.clone());
         }
-        Ok(data)
+        self.budget.hold(length)?;
+        read_bounded(&path).map_err(|error| fault(&error))
     }
 
     /// `length` bytes from `offset` of a buffer view.

@@ -147,6 +147,12 @@ impl Meshes {
         Ok((first as u32, vertices.plain.len() as u32))
     }
 
+    /// Bytes that all vertices take.
+    pub fn bytes(&self) -> usize {
+        let extras = if self.vertices.extras.is_empty() { 0 } else { size_of::<VertexExtra>() };
+        self.vertices.plain.len() * (size_of::<Vertex>() + extras)
+    }
+
     /// All vertices, and as many extras or none.
     pub fn finish(mut self) -> (Vec<Vertex>, Vec<VertexExtra>) {
         if !self.vertices.extras.is_empty() {

@@ -11,6 +11,8 @@
 
 mod accessor;
 mod animation;
+mod budget;
+mod census;
 mod container;
 mod corners;
 mod file;
@@ -19,6 +21,7 @@ mod material;
 mod mesh;
 mod nodes;
 mod notes;
+pub(super) mod outline;
 mod picture;
 mod punctual;
 mod tangents;
@@ -91,9 +94,7 @@ pub(super) fn load(path: &Path, added: &[motion::Request]) -> Result<Scene> {
     scene.files = file.read;
     match scene.bounds_over_time() {
         Some(bounds) => scene.bounds = bounds,
-        None => {
-            notes.fault("/nodes", Fault::new("gltf-value", "the scene reaches beyond what a float can hold"))
-        }
+        None => notes.fault("/nodes", Fault::new("gltf-value", "the scene reaches farther than 10¹⁸ m")),
     }
     scene.lacks = notes.finish()?;
     Ok(scene)
@@ -160,6 +161,9 @@ impl<'a> Builder<'a> {
             self.notes.lack("skinned mesh", "drawn at rest");
         }
         for (i, primitive) in mesh.primitives.iter().enumerate() {
+            if self.notes.is_full() {
+                return;
+            }
             if let Err(fault) = self.place_primitive(placed, mesh, (index, i), primitive) {
                 self.notes.fault(format_args!("/meshes/{index}/primitives/{i}"), fault);
             }
@@ -180,13 +184,17 @@ impl<'a> Builder<'a> {
         at: (usize, usize),
         primitive: &Primitive,
     ) -> Result<(), Fault> {
+        self.file.budget.hold(size_of::<Instance>() as u64)?;
         let materials = self.file.root.materials.len();
         let material = primitive.material.map_or(materials, |material| material.value());
         let needs = match self.needs.get(material) {
             Some(needs) if primitive.material.is_none() || material < materials => needs,
             _ => return Err(Fault::beyond("material", material, materials)),
         };
+        let before = self.meshes.bytes();
         let Some(corners) = self.meshes.part(self.file, mesh, at, needs, self.notes) else { return Ok(()) };
+        let new = self.meshes.bytes() - before + corners.len() * size_of::<Triangle>();
+        self.file.budget.hold(new as u64)?;
         if self.scene.triangles.len() + corners.len() > MOST_TRIANGLES {
             return Err(Fault::new(
                 "gltf-size",

@@ -2,10 +2,23 @@
 
 use crate::problem::{Problem, Problems};
 use crate::scene::Lack;
+use std::borrow::Cow;
 use std::fmt::Display;
 
 /// More faults than this say nothing new.
 const MOST_PROBLEMS: usize = 20;
+/// More kinds of lacks than this nobody reads.
+const MOST_LACKS: usize = 50;
+/// Longest message that repeats what a file says, in characters.
+const MOST_CHARACTERS: usize = 300;
+
+/// The start of a long text.
+pub fn brief(text: &str) -> Cow<'_, str> {
+    match text.char_indices().nth(MOST_CHARACTERS) {
+        Some((end, _)) => Cow::Owned(format!("{}…", &text[..end])),
+        None => Cow::Borrowed(text),
+    }
+}
 
 /// Something wrong with the file, not yet tied to the place where it was met.
 #[derive(Debug)]
@@ -33,7 +46,8 @@ impl Fault {
 
     /// As a problem of the file `name`, met at the JSON pointer `pointer`.
     pub fn at(self, name: &str, pointer: impl Display) -> Problem {
-        let problem = Problem::input(self.code, format!("`{name}` at {pointer}: {}", self.message));
+        let message = brief(&self.message);
+        let problem = Problem::input(self.code, format!("`{name}` at {pointer}: {message}"));
         match self.help {
             Some(help) => problem.help(help),
             None => problem,
@@ -60,6 +74,11 @@ impl Notes {
         }
     }
 
+    /// Whether there are so many faults that there is no use in looking for more.
+    pub fn is_full(&self) -> bool {
+        self.problems.len() >= MOST_PROBLEMS
+    }
+
     /// The value, or else notes the fault.
     pub fn catch<T>(&mut self, pointer: impl Display, result: Result<T, Fault>) -> Option<T> {
         result.map_err(|fault| self.fault(pointer, fault)).ok()
@@ -67,6 +86,10 @@ impl Notes {
 
     /// Counts one more `what` (a singular noun) that is `instead`.
     pub fn lack(&mut self, what: &str, instead: &str) {
+        let (what, instead) = match self.lacks.len() < MOST_LACKS {
+            true => (&*brief(what), instead),
+            false => ("thing of other kinds", "left out"),
+        };
         match self.lacks.iter_mut().find(|lack| lack.what == what && lack.instead == instead) {
             Some(lack) => lack.count += 1,
             None => {

@@ -56,7 +56,16 @@ pub fn camera(root: &Root, placed: &Placed, notes: &mut Notes) -> Option<Camera>
     let eye = placed.to_world.transform_point3(DVec3::ZERO);
     let [direction, up] = [-DVec3::Z, DVec3::Y].map(|axis| placed.to_world.transform_vector3(axis));
     match Camera::looking(&name, eye, direction, up) {
-        Some(camera) => Some(Camera { lens, near, ..camera }),
+        Some(camera) => {
+            let camera = Camera { lens, near, ..camera };
+            if !camera.is_usable() {
+                let message =
+                    format!("the lens, znear {near} or the position {eye} is beyond what a float can hold");
+                notes.fault(pointer, Fault::new("gltf-camera", message));
+                return None;
+            }
+            Some(camera)
+        }
         None => {
             let message = format!("node {} is scaled to nothing, so its camera looks nowhere", placed.index);
             notes.fault(pointer, Fault::new("gltf-camera", message));

@@ -16,8 +16,10 @@ use std::collections::HashMap;
 
 /// Most texels of a scene with all mip levels: 1 GiB.
 const MOST_TEXELS: u64 = 1 << 28;
-/// Texels of the images that are decoded at a time, unless one alone has more. Decoding takes up to 16 bytes for each.
+/// Texels of the images that are decoded at a time, unless one alone has more.
 const MOST_AT_ONCE: u64 = 1 << 24;
+/// Bytes that decoding takes at most for each.
+const DECODING: u64 = 16;
 
 /// What the texels of an image are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -83,11 +85,11 @@ impl Textures {
                 source
             }
         };
-        source.map(|source| Ok((self.place(source, coding)?, sampling))).transpose()
+        source.map(|source| Ok((self.place(file, source, coding)?, sampling))).transpose()
     }
 
     /// Where the source lies in `images`, as the given coding.
-    fn place(&mut self, source: usize, coding: Coding) -> Result<usize, Fault> {
+    fn place(&mut self, file: &File, source: usize, coding: Coding) -> Result<usize, Fault> {
         let source = &mut self.sources[source];
         let srgb = coding == Coding::Srgb;
         if let Some(place) = source.places.iter().find(|place| self.images[**place].srgb == srgb) {
@@ -99,6 +101,7 @@ impl Textures {
             let message = format!("with image {name:?} the scene has more than {MOST_TEXELS} texels");
             return Err(Fault::new("gltf-size", message));
         }
+        file.budget.hold(4 * words(*width, *height))?;
         source.places.push(self.images.len());
         self.images.push(Image {
             name: name.clone(),
@@ -115,6 +118,12 @@ impl Textures {
 
     /// Decodes what was asked for: the images, and all their texels.
     pub fn decode(mut self, file: &File, notes: &mut Notes) -> (Vec<Image>, Vec<u32>) {
+        let sizes = || self.sources.iter().map(|s| u64::from(s.header.width) * u64::from(s.header.height));
+        let at_once = sizes().max().unwrap_or(0).max(sizes().sum::<u64>().min(MOST_AT_ONCE));
+        if let Err(fault) = file.budget.pass(at_once * DECODING) {
+            notes.fault("/images", fault);
+            return Default::default();
+        }
         let mut texels = vec![0; self.images.last().map_or(0, end) as usize];
         let mut rest = texels.as_mut_slice();
         let mut targets = Vec::with_capacity(self.images.len());

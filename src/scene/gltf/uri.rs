@@ -1,6 +1,6 @@
 //! URIs of buffers and images: data inside the file, or a file in the scene's own folder or below it.
 
-use super::notes::Fault;
+use super::notes::{Fault, brief};
 use std::path::{Component, Path, PathBuf};
 
 /// Where a URI leads.
@@ -36,9 +36,9 @@ fn data(rest: &str) -> Result<Vec<u8>, Fault> {
 /// A path of the user's file tree that stays below where it starts.
 fn file(uri: &str) -> Result<PathBuf, Fault> {
     let decoded = String::from_utf8(percent(uri)?)
-        .map_err(|_| Fault::new("gltf-uri", format!("the URI {uri:?} is not UTF-8")))?;
+        .map_err(|_| Fault::new("gltf-uri", format!("the URI {:?} is not UTF-8", brief(uri))))?;
     inside(&decoded).ok_or_else(|| {
-        Fault::new("gltf-uri", format!("the URI {uri:?} is not a file beside the scene or below it"))
+        Fault::new("gltf-uri", format!("the URI {:?} is not a file beside the scene or below it", brief(uri)))
             .help("put the file into the scene's folder and name it by a relative path without `..`")
     })
 }
@@ -65,7 +65,10 @@ fn percent(text: &str) -> Result<Vec<u8>, Fault> {
         let digit = |byte: Option<u8>| char::from(byte?).to_digit(16);
         match (digit(bytes.next()), digit(bytes.next())) {
             (Some(high), Some(low)) => out.push((high * 16 + low) as u8),
-            _ => return Err(Fault::new("gltf-uri", format!("{text:?} has a `%` without two hex digits"))),
+            _ => {
+                let message = format!("{:?} has a `%` without two hex digits", brief(text));
+                return Err(Fault::new("gltf-uri", message));
+            }
         }
     }
     Ok(out)

@@ -89,7 +89,8 @@ pub fn read(file: &File, pointer: &str, attributes: &Attributes, notes: &mut Not
     }
     let vertex = |(i, position): (usize, &[f32; 3])| {
         let normal = normals.as_ref().map_or(Vec3::ZERO, |normals| Vec3::from(normals[i]));
-        let normal = if normal.is_finite() { normal.normalize_or_zero() } else { Vec3::ZERO };
+        // In f64, where the squares of the least f32 are not 0.
+        let normal = normal.as_dvec3().try_normalize().map_or(Vec3::ZERO, |unit| unit.as_vec3());
         let Vec2 { x: u, y: v } = uvs.as_ref().map_or(Vec2::ZERO, |uvs| finite_uv(uvs[i], reader.notes));
         Vertex { position: Vec3::from(*position), u, normal, v }
     };
