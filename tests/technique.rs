@@ -3,6 +3,8 @@
 
 #[path = "technique/cornell.rs"]
 mod cornell;
+#[path = "technique/environment.rs"]
+mod environment;
 #[path = "technique/fields.rs"]
 mod fields;
 #[path = "technique/integrator.rs"]

@@ -1,4 +1,4 @@
-//! Settings: RON files that name a glTF file and add lights, cameras and motion to it.
+//! Settings: RON files that name a glTF file and add lights, cameras, motion and an environment to it.
 //!
 //! ```ron
 //! Setting(
@@ -13,6 +13,7 @@
 //!         Directional(direction: (0.3, -1, 0.2), irradiance: (10, 10, 10)),
 //!         Point(position: (1, 2, 0), intensity: (10, 10, 10), motion: (keys: [(time: 0), (time: 4, offset: (0, 0, 2))])),
 //!     ],
+//!     environment: Picture(file: "noon.hdr", strength: 2, turn_degrees: 90),
 //!     motion: [(node: "door", axis: (0, 1, 0), pivot: (1, 0, 0), keys: [(time: 0), (time: 2, degrees: 90)])],
 //! )
 //! ```
@@ -23,10 +24,13 @@
 //! `pivot`, then an `offset`, after the file's own motion and in the world's axes; the pivot is the node's origin, or the
 //! light's position, unless given. Keys are joined by straight lines, or with `interpolation: Step` hold until the next;
 //! after the last the motion starts again. The setting's lights and cameras come before the file's.
+//! An environment is `Constant(radiance: (1, 1, 1))`, or a picture of all directions (.hdr, .exr) looked for like the
+//! glTF file; [`super::environment`] says what lies where in it.
 //! `about`, `licence` and `get` are for people: what the model is, whose, and how one comes by it.
 
 use super::camera::{Camera, Lens};
 use super::course::{self, Course, Key, Steps};
+use super::environment::Environment;
 use super::gltf;
 use super::layout::Light;
 use super::motion::Request;
@@ -52,6 +56,8 @@ struct Setting<'a> {
     lights: Vec<&'a RawValue>,
     #[serde(borrow, default)]
     motion: Vec<&'a RawValue>,
+    #[serde(borrow, default)]
+    environment: Option<&'a RawValue>,
     #[serde(default)]
     about: String,
     #[serde(default)]
@@ -127,12 +133,32 @@ struct MotionEntry {
     keys: Vec<Key>,
 }
 
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+enum EnvironmentEntry {
+    Constant {
+        radiance: [f32; 3],
+    },
+    Picture {
+        file: String,
+        #[serde(default = "one")]
+        strength: f32,
+        #[serde(default)]
+        turn_degrees: f32,
+    },
+}
+
+fn one() -> f32 {
+    1.0
+}
+
 /// What the setting at `path` says about itself. It need not be right in what it adds.
 pub(super) fn about(path: &Path) -> Result<About> {
     let source = read(path)?;
     let setting: Setting = parse(&source, source.text(), 0)?;
     let gltf = parse_raw::<String>(&source, setting.gltf)?;
-    let model = candidates(&source, setting.gltf, path)?.into_iter().find(|path| path.is_file());
+    let model =
+        candidates(&gltf, &place(&source, setting.gltf), path)?.into_iter().find(|path| path.is_file());
     let (lights, cameras) = (setting.lights.len(), setting.cameras.len());
     let Setting { about, licence, get, .. } = setting;
     Ok(About { about, licence, get, gltf, model, lights, cameras })
@@ -150,12 +176,17 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
         setting.lights.iter().filter_map(|raw| light(&source, raw).map_err(&mut keep).ok()).collect();
     let motion: Vec<Request> =
         setting.motion.iter().filter_map(|raw| motion(&source, raw).map_err(&mut keep).ok()).collect();
+    let environment = setting.environment.map(|raw| environment(&source, raw, path).map_err(&mut keep).ok());
     let model = model(&source, &setting, path);
     problems.extend(model.as_ref().err().cloned());
     Problems::check(problems)?;
     let mut scene = gltf::load(&model?, &motion)?;
     scene.name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     scene.files.insert(0, path.to_path_buf());
+    if let Some((environment, file)) = environment.flatten() {
+        scene.environment = Some(environment);
+        scene.files.extend(file);
+    }
     let near = (scene.bounds.diagonal() * 1e-4).max(1e-6);
     scene.cameras.splice(0..0, cameras.into_iter().map(|camera| Camera { near, ..camera }));
     scene.motion.shift(lights.len(), setting.cameras.len());
@@ -176,15 +207,14 @@ fn read(path: &Path) -> Result<Source> {
     Ok(Source::new(name, text))
 }
 
-/// Where the model may be that the setting at `path` names by `raw`, the best place first.
-fn candidates(source: &Source, raw: &RawValue, path: &Path) -> Result<Vec<PathBuf>, Problem> {
-    let name: String = parse_raw(source, raw)?;
-    let Some(relative) = gltf::uri::inside(&name) else {
+/// Where the file may be that the setting at `path` names, the best place first; `place` is where it does.
+fn candidates(name: &str, place: &Place, path: &Path) -> Result<Vec<PathBuf>, Problem> {
+    let Some(relative) = gltf::uri::inside(name) else {
         return Err(Problem::input(
-            "setting-gltf",
+            "setting-file",
             format!("{name:?} is not a path below the setting's folder"),
         )
-        .at(&place(source, raw), "absolute, or leads out")
+        .at(place, "absolute, or leads out")
         .help(format!("name a file beside the setting, or in the folder of {SCENES}, without `..`")));
     };
     let beside = path.parent().map(|folder| folder.join(&relative));
@@ -194,16 +224,45 @@ fn candidates(source: &Source, raw: &RawValue, path: &Path) -> Result<Vec<PathBu
 
 /// The glTF file that the setting at `path` names.
 fn model(source: &Source, setting: &Setting, path: &Path) -> Result<PathBuf, Problem> {
-    let found = candidates(source, setting.gltf, path)?.into_iter().find(|path| path.is_file());
+    let place = place(source, setting.gltf);
+    let name: String = parse_raw(source, setting.gltf)?;
+    let found = candidates(&name, &place, path)?.into_iter().find(|path| path.is_file());
     found.ok_or_else(|| {
-        let place = place(source, setting.gltf);
         let message = format!("there is no {} beside the setting, nor in {SCENES}", place.text());
         let help = match setting.get.as_str() {
             "" => format!("set {SCENES} to the folder that has it"),
             get => format!("set {SCENES} to the folder that has it; to get it: {get}"),
         };
-        Problem::input("setting-gltf", message).at(&place, "not found").help(help)
+        Problem::input("setting-file", message).at(&place, "not found").help(help)
     })
+}
+
+/// The environment, and the file that it is in.
+fn environment(
+    source: &Source,
+    raw: &RawValue,
+    path: &Path,
+) -> Result<(Environment, Option<PathBuf>), Problem> {
+    let at = place(source, raw);
+    let wrong = |message: String| Problem::input("setting-value", message).at(&at, "this environment");
+    match parse_raw(source, raw)? {
+        EnvironmentEntry::Constant { radiance } => {
+            Ok((Environment::constant(Vec3::from(radiance)).map_err(wrong)?, None))
+        }
+        EnvironmentEntry::Picture { file, strength, turn_degrees } => {
+            if !(strength >= 0.0 && strength.is_finite() && turn_degrees.is_finite()) {
+                return Err(wrong("`strength` must be 0 or more, and `turn_degrees` finite".to_owned()));
+            }
+            let found = candidates(&file, &at, path)?.into_iter().find(|path| path.is_file());
+            let found = found.ok_or_else(|| {
+                let message = format!("there is no {file:?} beside the setting, nor in {SCENES}");
+                Problem::input("setting-file", message).at(&at, "not found")
+            })?;
+            let read = Environment::read(&found, strength);
+            let read = read.map_err(|why| wrong(format!("{file:?} gives no environment: {why}")))?;
+            Ok((Environment { turn: turn_degrees.to_radians(), ..read }, Some(found)))
+        }
+    }
 }
 
 fn camera(source: &Source, raw: &RawValue) -> Result<Camera, Problem> {

@@ -14,8 +14,18 @@ impl Studio {
         Self(tempfile::tempdir().expect("a folder for scenes"))
     }
 
+    /// A file of the folder.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    /// A setting with these fields.
+    pub fn setting(&self, name: &str, fields: &str) -> PathBuf {
+        self.file(&format!("{name}.ron"), format!("Setting({fields})").as_bytes())
+    }
+
     fn file(&self, name: &str, content: &[u8]) -> PathBuf {
-        let path = self.0.path().join(name);
+        let path = self.path(name);
         std::fs::write(&path, content).expect("the scene can be written");
         path
     }

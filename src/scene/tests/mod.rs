@@ -1,3 +1,4 @@
+mod environment;
 mod images;
 mod layout;
 mod lens;

@@ -58,9 +58,9 @@ fn mistakes_are_pointed_at() {
         (format!("Setting({box_}, lights: [Point(position: (0, 0))])"), "", "setting", ""),
         ("Setting()".to_owned(), "", "setting", "gltf"),
         ("Setting(gltf: \"cornell-box.glb\"".to_owned(), "", "setting", ""),
-        (r#"Setting(gltf: "../x.glb")"#.to_owned(), r#""../x.glb""#, "setting-gltf", "`..`"),
-        (r#"Setting(gltf: "/etc/passwd")"#.to_owned(), r#""/etc/passwd""#, "setting-gltf", ""),
-        (r#"Setting(gltf: "none.glb")"#.to_owned(), r#""none.glb""#, "setting-gltf", "VOXGI_SCENES"),
+        (r#"Setting(gltf: "../x.glb")"#.to_owned(), r#""../x.glb""#, "setting-file", "`..`"),
+        (r#"Setting(gltf: "/etc/passwd")"#.to_owned(), r#""/etc/passwd""#, "setting-file", ""),
+        (r#"Setting(gltf: "none.glb")"#.to_owned(), r#""none.glb""#, "setting-file", "VOXGI_SCENES"),
         (
             format!("Setting({box_}, lights: [Point(position: (0, 0, 0), intensity: (1, -1, 1))])"),
             "Point(position: (0, 0, 0), intensity: (1, -1, 1))",
