@@ -190,7 +190,8 @@ fn settings_say_how_to_get_their_models() {
     let mut settings = 0;
     for (path, entry) in entries {
         let entry = entry.unwrap_or_else(|problems| panic!("{problems}"));
-        let Some(about) = entry.about else { continue };
+        // Others name a scene that is in the repository.
+        let Some(about) = entry.about.filter(|about| !own(&about.gltf).is_file()) else { continue };
         settings += 1;
         assert!(!about.about.is_empty() && !about.licence.is_empty() && !about.get.is_empty(), "{path:?}");
         assert_eq!(entry.outline.is_some(), about.model.is_some(), "{path:?}");

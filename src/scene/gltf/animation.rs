@@ -64,6 +64,11 @@ fn track(
         Checked::Valid(Json::CubicSpline) => Interpolation::Spline,
         Checked::Invalid => return Err(value("the interpolation is none that glTF has")),
     };
+    let input = file.root.accessors.get(sampler.input.value());
+    if input.is_some_and(|input| input.buffer_view.is_none() && input.sparse.is_none()) {
+        notes.lack("animation of keys without times", "not played");
+        return Ok(None);
+    }
     let times: Vec<f64> = floats::<1>(file, sampler.input)?.into_iter().map(|[t]| f64::from(t)).collect();
     let values: Vec<DVec4> = if property == Property::Rotation {
         floats::<4>(file, sampler.output)?.into_iter().map(|v| DVec4::from(v.map(f64::from))).collect()
