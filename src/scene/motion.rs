@@ -79,7 +79,7 @@ pub struct Track {
     pub duration: f64,
 }
 
-/// Values at growing times; at least one.
+/// Values at times that never fall; at least one.
 #[derive(Clone, Debug)]
 pub struct Keys {
     pub interpolation: Interpolation,

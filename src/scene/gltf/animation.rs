@@ -90,9 +90,9 @@ fn checked(keys: Keys, property: Property) -> Result<Keys, Fault> {
         let message = format!("{} keys can't have {} values", times.len(), values.len());
         return Err(value(&message));
     }
-    let growing = times.windows(2).all(|pair| pair[0] < pair[1]);
+    let growing = times.windows(2).all(|pair| pair[0] <= pair[1]);
     if !(growing && times[0] >= 0.0 && times[times.len() - 1].is_finite()) {
-        return Err(value("the times of the keys must grow from 0 or later"));
+        return Err(value("the times of the keys must not fall, and begin at 0 or later"));
     }
     if !values.iter().all(|v| v.is_finite()) {
         return Err(value("a key is not finite"));
