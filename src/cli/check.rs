@@ -5,6 +5,7 @@ use super::{PipelineArgs, print, print_json, tell};
 use crate::device;
 use crate::graph;
 use crate::picture;
+use crate::plan::PlannedResource;
 use crate::problem::{Problem, Problems, Result};
 use crate::record;
 use crate::scene::Scene;
@@ -152,6 +153,23 @@ fn lacks(prepared: &Prepared, scene: Option<&Scene>) -> Vec<String> {
     }
 }
 
+/// Bytes of a resource; `None` if not known without a scene.
+fn taken(planned: &PlannedResource, made: &graph::Resource, scene: Option<&Scene>) -> Option<u64> {
+    match made.shape {
+        graph::Shape::Scene => Some(scene?.bytes(&planned.path)?.len() as u64),
+        _ => made.bytes,
+    }
+}
+
+/// Whether some resource's size is not known without a scene.
+fn open(graph: &graph::Graph) -> bool {
+    let own = graph
+        .resources
+        .iter()
+        .filter(|r| matches!(r.shape, graph::Shape::Buffer(_) | graph::Shape::Texture(_)));
+    own.into_iter().any(|resource| resource.bytes.is_none())
+}
+
 fn text(name: &str, prepared: &Prepared, scene: Option<&Scene>) -> String {
     let (graph, schedule) = (&prepared.graph, &prepared.schedule);
     let mut text = format!("{name}: {}\n", graph.plan.about);
@@ -163,14 +181,14 @@ fn text(name: &str, prepared: &Prepared, scene: Option<&Scene>) -> String {
     }
     let width = graph.plan.resources.iter().map(|r| r.path.len()).max().unwrap_or(0);
     let _infallible = writeln!(text, "  {:<width$}  {:>11}  {:>9}  memory", "resource", "size", "steps");
-    for (planned, at) in graph.plan.resources.iter().zip(&schedule.places) {
+    for ((planned, made), at) in graph.plan.resources.iter().zip(&graph.resources).zip(&schedule.places) {
         let Some(life) = at.life else { continue };
         let kept = if at.retained { ", kept for later frames" } else { "" };
         let _infallible = writeln!(
             text,
             "  {:<width$}  {:>11}  {:>9}  {}{kept}",
             planned.path,
-            bytes(at.bytes),
+            taken(planned, made, scene).map_or_else(|| "open".to_owned(), bytes),
             format!("{}-{}", life.first, life.last),
             place(&at.placement)
         );
@@ -178,8 +196,9 @@ fn text(name: &str, prepared: &Prepared, scene: Option<&Scene>) -> String {
     let memory = &schedule.memory;
     let _infallible = writeln!(
         text,
-        "  memory: {} (without reuse {}, least possible {}), kept for later frames {}",
+        "  memory: {}{} (without reuse {}, least possible {}), kept for later frames {}",
         bytes(memory.peak_bytes),
+        if open(graph) { ", and what depends on the scene" } else { "" },
         bytes(memory.without_reuse_bytes),
         bytes(memory.lower_bound_bytes),
         bytes(memory.kept_bytes)
@@ -208,10 +227,11 @@ fn json(name: &str, prepared: &Prepared, scene: Option<&Scene>) -> serde_json::V
         .plan
         .resources
         .iter()
+        .zip(&graph.resources)
         .zip(&schedule.places)
-        .map(|(planned, at)| {
+        .map(|((planned, made), at)| {
             serde_json::json!({
-                "path": planned.path, "bytes": at.bytes, "memory": place(&at.placement), "kept": at.retained,
+                "path": planned.path, "bytes": taken(planned, made, scene), "memory": place(&at.placement), "kept": at.retained,
                 "first_step": at.life.map(|l| l.first), "last_step": at.life.map(|l| l.last),
             })
         })

@@ -7,6 +7,8 @@
 
 mod render;
 pub mod ron;
+#[cfg(test)]
+mod tests;
 
 use std::fmt;
 use std::ops::Range;
@@ -110,9 +112,21 @@ pub struct Problem {
     pub help: Option<String>,
 }
 
+/// Messages quote what the user wrote, however long that is: of more than this many bytes the middle is left out.
+const MOST_WORDS: usize = 4000;
+
+fn readable(text: String) -> String {
+    if text.len() <= MOST_WORDS {
+        return text;
+    }
+    let (start, end) =
+        (text.floor_char_boundary(MOST_WORDS / 2), text.ceil_char_boundary(text.len() - MOST_WORDS / 4));
+    format!("{} … {}", &text[..start], &text[end..])
+}
+
 impl Problem {
     fn new(kind: Kind, code: &'static str, message: impl Into<String>) -> Self {
-        Self { kind, code, message: message.into(), labels: Vec::new(), help: None }
+        Self { kind, code, message: readable(message.into()), labels: Vec::new(), help: None }
     }
 
     pub fn input(code: &'static str, message: impl Into<String>) -> Self {
@@ -129,13 +143,13 @@ impl Problem {
 
     #[must_use]
     pub fn at(mut self, place: &Place, label: impl Into<String>) -> Self {
-        self.labels.push((place.clone(), label.into()));
+        self.labels.push((place.clone(), readable(label.into())));
         self
     }
 
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
-        self.help = Some(help.into());
+        self.help = Some(readable(help.into()));
         self
     }
 

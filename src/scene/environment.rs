@@ -18,7 +18,7 @@ pub struct Environment {
     pub height: u32,
     pub levels: u32,
     /// The picture, then its mip levels, each half the one before, rounded down but at least 1; the fourth component is 0.
-    /// A level is the mean of the one before, weighted by solid angle.
+    /// A level is the mean of the one before over solid angle.
     pub texels: Vec<Vec4>,
     /// Radians by which the picture is turned about the vertical axis, from −z towards +x.
     pub turn: f32,
@@ -80,26 +80,37 @@ impl Environment {
     }
 }
 
-/// Means over blocks of texels, weighted by the solid angles of their rows.
+/// The mean of `from` over the solid angle of each texel of the size `to`.
 fn shrink(from: &[Vec4], size: (u32, u32), to: (u32, u32)) -> Vec<Vec4> {
-    // Which texels a coarser one stands for: with odd sizes the last one takes one more.
-    let block = |i: u32, to: u32, size: u32| {
-        let end = if i + 1 == to { size } else { (i + 1) * (size / to) };
-        i * (size / to)..end
-    };
-    let weight = |row: u32| ((row as f32 + 0.5) / size.1 as f32 * PI).sin();
-    let mut out = Vec::with_capacity((to.0 * to.1) as usize);
-    for y in 0..to.1 {
-        for x in 0..to.0 {
+    let columns = overlaps(size.0, to.0, |begin, end| end - begin);
+    let angle = |at: f32| (at / size.1 as f32 * PI).cos();
+    let rows = overlaps(size.1, to.1, |begin, end| angle(begin) - angle(end));
+    let mut out = Vec::with_capacity(columns.len() * rows.len());
+    for row in &rows {
+        out.extend(columns.iter().map(|column| {
             let (mut sum, mut weights) = (Vec4::ZERO, 0.0);
-            for row in block(y, to.1, size.1) {
-                for column in block(x, to.0, size.0) {
-                    sum += from[(row * size.0 + column) as usize] * weight(row);
-                    weights += weight(row);
+            for (y, height) in row {
+                for (x, width) in column {
+                    sum += from[y * size.0 as usize + x] * (height * width);
+                    weights += height * width;
                 }
             }
-            out.push(sum / weights);
-        }
+            sum / weights
+        }));
     }
     out
+}
+
+/// For each of `to` even pieces of a line of `from` units: the units it overlaps, each with what `measure` makes of
+/// where the overlap begins and ends.
+fn overlaps(from: u32, to: u32, measure: impl Fn(f32, f32) -> f32) -> Vec<Vec<(usize, f32)>> {
+    let ratio = from as f32 / to as f32;
+    let piece = |i: u32| {
+        let (begin, end) = (i as f32 * ratio, (i + 1) as f32 * ratio);
+        let units = begin as usize..(end.ceil() as usize).min(from as usize);
+        let part = |unit: usize| (begin.max(unit as f32), end.min((unit + 1) as f32));
+        let parts = units.map(|unit| (unit, part(unit))).filter(|(_, (begin, end))| begin < end);
+        parts.map(|(unit, (begin, end))| (unit, measure(begin, end))).collect()
+    };
+    (0..to).map(piece).collect()
 }
