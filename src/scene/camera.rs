@@ -59,11 +59,17 @@ impl Camera {
         }
     }
 
-    /// Whether its numbers are such that f32 can hold the camera of a square picture.
+    /// Whether its numbers are such that f32 can hold the camera of pictures of all shapes.
     pub fn is_usable(&self) -> bool {
-        let uniform = self.uniform(1.0);
-        let [to_clip, from_clip] = [uniform.view_projection, uniform.inverse_view_projection];
-        to_clip.is_finite() && from_clip.is_finite() && is_near(uniform.position) && uniform.near > 0.0
+        [1e-4, 1.0, 1e4].into_iter().all(|aspect| {
+            let uniform = self.uniform(aspect);
+            let matrices = [uniform.view_projection, uniform.inverse_view_projection];
+            matrices.iter().all(|matrix| matrix.is_finite())
+                && [uniform.right, uniform.up].iter().all(|side| side.is_finite())
+                && uniform.distance.is_finite()
+                && is_near(uniform.position)
+                && uniform.near > 0.0
+        })
     }
 
     /// The camera for a picture whose width is `aspect` times its height. Clip space is wgpu's: x right, y up, depth 1

@@ -169,6 +169,21 @@ fn tiny_normals_get_unit_length() {
     }
 }
 
+/// Corners of no triangle have normals too.
+#[test]
+fn normals_of_unused_vertices_have_unit_length() {
+    let positions = floats(&[&TRIANGLE[..], &[5.; 3]].concat());
+    let lists = [("POSITION", positions, 5126, "VEC3", 4), ("NORMAL", vec![0; 48], 5126, "VEC3", 4)];
+    let mut document = document(&lists);
+    document["accessors"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"componentType": 5121, "type": "SCALAR", "count": 3}));
+    document["meshes"][0]["primitives"][0]["indices"] = json!(2);
+    let vertices = load(&document).unwrap().vertices;
+    assert!(vertices.len() == 4 && vertices.iter().all(|vertex| vertex.normal == glam::Vec3::Z));
+}
+
 /// Cameras and lights whose numbers f32 can't carry on with.
 #[test]
 fn vast_cameras_and_lights_are_refused() {
@@ -178,6 +193,12 @@ fn vast_cameras_and_lights_are_refused() {
     assert!(load(&with(seen.clone(), "/cameras", camera(1.0, 0.1))).is_ok());
     refused(&with(seen.clone(), "/cameras", camera(1e-40, 0.1)), "gltf-camera", "/cameras/0");
     refused(&with(seen.clone(), "/cameras", camera(1.0, 1e-42)), "gltf-camera", "/cameras/0");
+    let parallel = |ymag: f64| {
+        let lens = json!({"xmag": 1, "ymag": ymag, "znear": 0.1, "zfar": 10});
+        json!([{"type": "orthographic", "orthographic": lens}])
+    };
+    assert!(load(&with(seen.clone(), "/cameras", parallel(1.0))).is_ok());
+    refused(&with(seen.clone(), "/cameras", parallel(3.4e38)), "gltf-camera", "/cameras/0");
     let nodes = |node: Value| with(triangle(), "/nodes", json!([{"mesh": 0}, node]));
     let far = |node: Value| with(nodes(node), "/scenes/0/nodes", json!([0, 1]));
     let camera_far = far(json!({"camera": 0, "translation": [1e19, 0, 0]}));

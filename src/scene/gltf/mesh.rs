@@ -158,6 +158,9 @@ impl Meshes {
         if !self.vertices.extras.is_empty() {
             self.vertices.fill_extras();
         }
+        // Corners of no triangle were not mended.
+        let unused = self.vertices.plain.iter_mut().filter(|vertex| vertex.normal == Vec3::ZERO);
+        unused.for_each(|vertex| vertex.normal = Vec3::Z);
         (self.vertices.plain, self.vertices.extras)
     }
 }
