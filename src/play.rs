@@ -15,6 +15,8 @@ use std::collections::{BTreeMap, BTreeSet};
 pub struct Play {
     pub scene: Scene,
     camera: Camera,
+    /// The scene's camera that is looked through, if it is one of them.
+    through: Option<usize>,
     /// Width of the picture over its height.
     aspect: f64,
     values: Vec<Value>,
@@ -32,16 +34,22 @@ pub fn varies(scene: &Scene, camera: usize) -> BTreeSet<u32> {
 }
 
 impl Play {
-    /// `frame` was realised with this scene as it is now, seen through `camera`, one of its own or not.
-    pub fn new(scene: Scene, camera: Camera, size: [u32; 2], frame: &Frame) -> Self {
+    /// `frame` was realised with this scene as it is now, seen through its camera of this index.
+    pub fn new(scene: Scene, through: usize, size: [u32; 2], frame: &Frame) -> Self {
+        let camera = scene.cameras.get(through).cloned().unwrap_or_else(|| Camera::framing(&scene.bounds));
         let values = frame.graph.plan.values.iter().map(|value| value.value.clone()).collect();
-        Self { scene, camera, aspect: f64::from(size[0]) / f64::from(size[1]), values }
+        Self {
+            scene,
+            camera,
+            through: Some(through),
+            aspect: f64::from(size[0]) / f64::from(size[1]),
+            values,
+        }
     }
 
     /// Brings the scene to `time`, in seconds; says which bits changed. A camera of the scene that is looked through
     /// moves with it.
     pub fn go_to(&mut self, frame: &mut Frame, gpu: &Gpu, time: f64) -> Result<BTreeSet<u32>> {
-        let through = self.scene.cameras.iter().position(|camera| *camera == self.camera);
         let moved = self.scene.pose(time);
         let mut changed = BTreeSet::new();
         if moved.geometry {
@@ -54,14 +62,19 @@ impl Play {
             frame.facts().put_views(&self.scene.views);
             changed.insert(bit(Cause::Lights));
         }
-        if let Some(camera) = through.and_then(|index| self.scene.cameras.get(index)) {
-            changed.extend(self.look(frame, &camera.clone())?);
+        if let Some(camera) = self.through.and_then(|index| self.scene.cameras.get(index)).cloned() {
+            changed.extend(self.see(frame, &camera)?);
         }
         Ok(changed)
     }
 
-    /// Looks through `camera` from now on; says which bits changed.
+    /// Looks through `camera` from now on, which is not the scene's; says which bits changed.
     pub fn look(&mut self, frame: &mut Frame, camera: &Camera) -> Result<BTreeSet<u32>> {
+        self.through = None;
+        self.see(frame, camera)
+    }
+
+    fn see(&mut self, frame: &mut Frame, camera: &Camera) -> Result<BTreeSet<u32>> {
         let mut changed = BTreeSet::new();
         if self.camera == *camera {
             return Ok(changed);

@@ -11,5 +11,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let start = textureLoad(first, id, 0);
-    textureStore(lit, id, vec4f(start.rgb + textureLoad(bounced, id, 0).rgb, start.a));
+    // Radiances that half floats don't hold are cut.
+    let radiance = min(start.rgb + textureLoad(bounced, id, 0).rgb, vec3f(65504.0));
+    textureStore(lit, id, vec4f(radiance, start.a));
 }

@@ -44,5 +44,5 @@ fn main(
     let n = unit_or(surfel.normal, vec3f(0.0, 1.0, 0.0));
     let resolution = f32(size.x);
     let sides = Sides(gather(surfel.position, n, resolution), gather(surfel.position, -n, resolution));
-    textureStore(bounced, voxel, vec4f(surfel.albedo / PI * brighter(sides), 1.0));
+    textureStore(bounced, voxel, vec4f(min(surfel.albedo / PI * brighter(sides), vec3f(65504.0)), 1.0));
 }

@@ -68,7 +68,8 @@ fn image_level(image: vec4u, uv: vec2f, level: u32, nearest: bool) -> vec4f {
         offset += u32(size.x * size.y);
         size = max(size / 2, vec2i(1));
     }
-    let at = uv * vec2f(size);
+    // Coordinates so far away have lost their fraction; beyond, they would overflow.
+    let at = clamp(uv, vec2f(-1048576.0), vec2f(1048576.0)) * vec2f(size);
     if nearest {
         return texel_at(image, offset, size, vec2i(floor(at)));
     }

@@ -63,7 +63,9 @@ fn seen_beyond(direction: vec3f, width: f32) -> vec3f {
     }
 }
 
-fn store(voxel: vec3u, value: vec4f) {
+/// Radiances that half floats don't hold are cut: infinities would spread.
+fn store(voxel: vec3u, radiance: vec4f) {
+    let value = min(radiance, vec4f(65504.0));
     textureStore(lit, voxel, value);
     @if(bounces > 1) {
         textureStore(first, voxel, value);

@@ -93,7 +93,8 @@ fn fragment(in: Varying) -> Targets {
     @if(scene.emissive) {
         let double_sided = (materials[in.material].flags & MATERIAL_DOUBLE_SIDED) != 0u;
         let emission = emission_at(in.material, in.uv, footprint);
-        out.emission = vec4f(select(vec3f(0.0), emission, front || double_sided), 0.0);
+        // The target is of half floats.
+        out.emission = vec4f(min(select(vec3f(0.0), emission, front || double_sided), vec3f(65504.0)), 0.0);
     }
     return out;
 }

@@ -33,7 +33,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 mean_unsigned(sum_at(at + SUM_EMISSION + 1u), count),
                 mean_unsigned(sum_at(at + SUM_EMISSION + 2u), count),
             );
-            value = vec4f(mean * scene.max_emission, 1.0);
+            value = vec4f(min(mean * scene.max_emission, vec3f(65504.0)), 1.0);
         }
     }
     textureStore(voxels, id, value);

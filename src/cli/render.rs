@@ -155,9 +155,11 @@ fn table(record: &Record) -> String {
     for stage in &record.stages {
         match &stage.reason {
             None => line(format_args!(
-                "{:<widest$}  {:>9}  {:>9}",
+                "{:<widest$}  {:>9}  {:>9}  {:>9}  {:>9}",
                 stage.path,
                 ms(stage.gpu_ms),
+                ms(stage.spread.p10),
+                ms(stage.spread.p90),
                 ms(stage.first_use_ms)
             )),
             Some(reason) => {

@@ -79,9 +79,7 @@ impl RunArgs {
         };
         let warnings = prepared.warnings.clone();
         let frame = prepared.realise(&gpu, &scene, clock.clone(), poison)?;
-        let camera = scene.cameras.get(request.camera).cloned();
-        let camera = camera.unwrap_or_else(|| Camera::framing(&scene.bounds));
-        let play = Play::new(scene, camera, request.size, &frame);
+        let play = Play::new(scene, request.camera, request.size, &frame);
         let motion = (self.pipeline_args.time, self.pipeline_args.play);
         Ok(Started { play, motion, gpu, frame, clock, changes, warnings })
     }

@@ -147,11 +147,13 @@ impl<'a> Filler<'a> {
     pub fn resets(&self) -> Result<Vec<Reset>> {
         let mut resets = Vec::new();
         for (item, planned) in self.graph.plan.resources.iter().enumerate() {
-            if let Start::Kept { value, reset, .. } = &planned.start {
+            if let Start::Kept { value, reset, steady } = &planned.start {
                 let resource = &self.graph.resources[item];
                 let cells: Vec<u32> = (0..resource.mips * resource.layers * resource.slots).collect();
                 let fills = self.fill(item, &cells, With::Value(*value))?;
-                resets.push(Reset { causes: facts::bits(reset), fills });
+                if !fills.is_empty() {
+                    resets.push(Reset { causes: facts::bits(reset), steady: *steady, fills });
+                }
             }
         }
         Ok(resets)

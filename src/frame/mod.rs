@@ -63,6 +63,8 @@ enum Op {
 
 struct Reset {
     causes: std::collections::BTreeSet<u32>,
+    /// A later frame is an earlier one again, as far as this goes.
+    steady: bool,
     fills: Vec<FillOp>,
 }
 

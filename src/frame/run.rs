@@ -65,7 +65,7 @@ impl Frame {
 
     /// Whether something is kept from frame to frame, so that a later frame is not an earlier one again.
     pub fn goes_on(&self) -> bool {
-        !self.resets.is_empty()
+        self.resets.iter().any(|reset| !reset.steady)
     }
 
     /// What the begins and ends in [`Times::spans`] count.

@@ -11,6 +11,8 @@ use std::path::Path;
 
 /// Widest picture in texels: 8192 × 4096 with its mip levels take 683 MiB.
 const MOST_WIDTH: u32 = 8192;
+/// Brightest radiance, W/(sr·m²): sums over all texels stay finite.
+const BRIGHTEST: f32 = 1e18;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Environment {
@@ -47,15 +49,21 @@ impl Environment {
         }
         let pixels = reader.decode().map_err(|error| format!("it can't be decoded: {error}"))?.into_rgb32f();
         let (width, height) = pixels.dimensions();
-        let texels = pixels.pixels().map(|p| (Vec3::from(p.0) * strength).extend(0.0)).collect();
+        let count = levels(width, height).map(|(w, h)| w as usize * h as usize).sum();
+        let mut texels = Vec::with_capacity(count);
+        texels.extend(pixels.pixels().map(|p| (Vec3::from(p.0) * strength).extend(0.0)));
+        drop(pixels);
         Self::of(width, height, texels)
     }
 
     fn of(width: u32, height: u32, texels: Vec<Vec4>) -> Result<Self, String> {
-        let wrong = |t: &Vec4| !(t.is_finite() && t.min_element() >= 0.0);
+        if width == 0 || height == 0 {
+            return Err(format!("it has no texels: {width} × {height}"));
+        }
+        let wrong = |t: &Vec4| !(t.min_element() >= 0.0 && t.max_element() <= BRIGHTEST);
         if let Some(index) = texels.iter().position(wrong) {
             let (x, y) = (index as u32 % width, index as u32 / width);
-            return Err(format!("the radiance at column {x}, row {y} is negative or not finite"));
+            return Err(format!("the radiance at column {x}, row {y} is negative, or beyond {BRIGHTEST:e}"));
         }
         let mut made = Self { width, height, levels: 1, texels, turn: 0.0 };
         made.add_levels();
@@ -63,21 +71,27 @@ impl Environment {
     }
 
     fn add_levels(&mut self) {
-        let (mut start, mut size) = (0, (self.width, self.height));
-        while size != (1, 1) {
-            let next = ((size.0 / 2).max(1), (size.1 / 2).max(1));
-            let level = shrink(&self.texels[start..], size, next);
+        let mut start = 0;
+        let sizes: Vec<_> = levels(self.width, self.height).collect();
+        for pair in sizes.windows(2) {
+            let level = shrink(&self.texels[start..], pair[0], pair[1]);
             start = self.texels.len();
             self.texels.extend(level);
-            self.levels += 1;
-            size = next;
         }
+        self.levels = sizes.len() as u32;
     }
 
     /// Mean radiance over all directions.
     pub fn mean(&self) -> Vec3 {
         self.texels.last().map_or(Vec3::ZERO, |texel| texel.truncate())
     }
+}
+
+/// The sizes of all levels.
+fn levels(width: u32, height: u32) -> impl Iterator<Item = (u32, u32)> {
+    std::iter::successors(Some((width, height)), |(w, h)| {
+        (*w > 1 || *h > 1).then(|| ((w / 2).max(1), (h / 2).max(1)))
+    })
 }
 
 /// The mean of `from` over the solid angle of each texel of the size `to`.

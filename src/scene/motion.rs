@@ -182,6 +182,8 @@ impl MovingNode {
             match track.property {
                 Property::Translation => translation = value.truncate(),
                 Property::Scale => scale = value.truncate(),
+                // A spline between opposite quaternions passes through none at all.
+                Property::Rotation if value.length() < 1e-9 => {}
                 Property::Rotation => rotation = DQuat::from_vec4(value).normalize(),
             }
         }
@@ -238,27 +240,97 @@ impl Motion {
             }
         }
     }
+}
 
-    /// Times at which to look where everything gets to: all keys, and points between them.
-    fn instants(&self) -> Vec<f64> {
-        /// Turns between two keys stay within 3° of such a point if they are less than 180°.
-        const BETWEEN: usize = 32;
-        /// A long recording is looked at this often.
-        const MOST: usize = 1024;
-        let tracks = self.nodes.iter().flat_map(|node| {
-            let tracks = node.tracks.iter().map(|track| &track.keys);
-            tracks.chain(node.added.as_ref().map(|added| &added.keys))
-        });
-        let mut keys: Vec<f64> = tracks.flat_map(|keys| keys.times.iter().copied()).chain([0.0]).collect();
-        keys.sort_by(f64::total_cmp);
-        keys.dedup();
-        let thin = keys.len().div_ceil(MOST / BETWEEN).max(1);
-        let keys: Vec<f64> = keys.iter().copied().step_by(thin).chain(keys.last().copied()).collect();
-        let between = |pair: &[f64]| {
-            let (a, b) = (pair[0], pair[1]);
-            (0..BETWEEN).map(move |i| a + (b - a) * i as f64 / BETWEEN as f64).collect::<Vec<_>>()
+/// Moments at which to look where something gets to: all keys, and points between them.
+fn moments(keys: &Keys) -> Vec<f64> {
+    /// Points for each key: a turn by less than 180° between two keys stays within 3° of one.
+    const BETWEEN: usize = 32;
+    /// Of a long recording, the keys are enough.
+    const MOST: usize = 1024;
+    let parts = (MOST / keys.times.len().max(1)).clamp(1, BETWEEN);
+    let between = |pair: &[f64]| {
+        let (a, b) = (pair[0], pair[1]);
+        (0..parts).map(move |i| a + (b - a) * i as f64 / parts as f64).collect::<Vec<_>>()
+    };
+    keys.times.windows(2).flat_map(between).chain(keys.times.last().copied()).collect()
+}
+
+/// The box around what `matrices` make of a box.
+fn swept(bounds: &Cuboid, matrices: impl Iterator<Item = DMat4>) -> Option<Cuboid> {
+    let corners = matrices.flat_map(|matrix| bounds.corners().map(|corner| matrix.transform_point3(corner)));
+    corners.map(|corner| Cuboid { min: corner, max: corner }).reduce(|a, b| a.union(&b))
+}
+
+/// As [`Bounds`], in the precision of transforms.
+#[derive(Clone, Copy)]
+struct Cuboid {
+    min: DVec3,
+    max: DVec3,
+}
+
+impl Cuboid {
+    fn union(&self, other: &Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    fn corners(&self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |bit: usize, lo: f64, hi: f64| if i >> bit & 1 == 0 { lo } else { hi };
+            let (min, max) = (self.min, self.max);
+            DVec3::new(pick(0, min.x, max.x), pick(1, min.y, max.y), pick(2, min.z, max.z))
+        })
+    }
+}
+
+impl MovingNode {
+    /// Where a box in the node's own space gets to in its parent's, at any time.
+    fn lift(&self, bounds: &Cuboid) -> Option<Cuboid> {
+        let moments = self.tracks.iter().flat_map(|track| moments(&track.keys)).chain([0.0]);
+        swept(bounds, moments.map(|time| self.local(time)))
+    }
+}
+
+impl Motion {
+    /// The box around what moves, at any times of all its motions: `boxes` are those of the nodes, in their own spaces.
+    /// A node's box goes up to its parent as the box around all places that its own motion takes it to.
+    fn reach(&self, mut boxes: Vec<Option<Cuboid>>) -> Option<Cuboid> {
+        let join = |a: &mut Option<Cuboid>, b: Option<Cuboid>| {
+            *a = [*a, b].into_iter().flatten().reduce(|a, b| a.union(&b));
         };
-        keys.windows(2).flat_map(between).chain(keys.last().copied()).collect()
+        let mut world = None;
+        for index in (0..self.nodes.len()).rev() {
+            let Some(bounds) = boxes[index] else { continue };
+            let node = &self.nodes[index];
+            match (&node.parent, &node.added) {
+                (Parent::Moving(parent), None) => join(&mut boxes[*parent], node.lift(&bounds)),
+                _ => join(&mut world, self.to_world_box(index, bounds)),
+            }
+        }
+        world
+    }
+
+    /// A node's box up to the world. What a setting adds is in the world's axes, so its way can't end at the parent.
+    fn to_world_box(&self, index: usize, bounds: Cuboid) -> Option<Cuboid> {
+        let mut at = Some(index);
+        let mut bounds = bounds;
+        let mut adds = Vec::new();
+        while let Some(node) = at.and_then(|index| self.nodes.get(index)) {
+            bounds = node.lift(&bounds)?;
+            adds.extend(&node.added);
+            at = match &node.parent {
+                Parent::Moving(parent) => Some(*parent),
+                Parent::Still(matrix) => {
+                    bounds = swept(&bounds, std::iter::once(*matrix))?;
+                    None
+                }
+            };
+        }
+        // What moves a parent comes before what moves its child.
+        for added in adds.iter().rev() {
+            bounds = swept(&bounds, moments(&added.keys).into_iter().map(|time| added.matrix(time)))?;
+        }
+        Some(bounds)
     }
 }
 
@@ -275,13 +347,13 @@ impl Scene {
         self.still_triangles = self.triangles.partition_point(|t| !moves[t.instance as usize]);
     }
 
-    /// Puts all that moves to where it is at `time`, in seconds, and says what that changed. What would leave the range of
-    /// floats stays where it was.
+    /// Puts all that moves to where it is at `time`, in seconds, and says what that changed. What would go beyond
+    /// [`super::FARTHEST`] stays where it was.
     pub fn pose(&mut self, time: f64) -> Moved {
         let mut moved = Moved::default();
         let all = self.motion.to_world(time);
         for (node, to_world) in self.motion.nodes.iter().zip(&all) {
-            if !to_world.as_mat4().is_finite() {
+            if !(to_world.as_mat4().is_finite() && is_near(to_world.w_axis.truncate().as_vec3())) {
                 continue;
             }
             for carried in &node.carries {
@@ -309,42 +381,38 @@ impl Scene {
         moved
     }
 
-    /// The box around all triangles at all times; `None` if a corner is not finite in the world. Of what moves, the box
-    /// of its mesh is followed, at all keys and between them.
+    /// The box around all triangles at all times; `None` if a corner is beyond [`super::FARTHEST`]. Of what moves, the box
+    /// of its mesh is followed.
     pub(super) fn bounds_over_time(&self) -> Option<Bounds> {
         let still = self.world_bounds(0..self.still_triangles)?;
-        let boxes = self.moving_boxes();
-        let mut moving: Option<Bounds> = None;
-        for time in if boxes.is_empty() { Vec::new() } else { self.motion.instants() } {
-            let all = self.motion.to_world(time);
-            for (node, bounds) in &boxes {
-                let corners = bounds.corners().map(|corner| all[*node].transform_point3(corner).as_vec3());
-                if !corners.iter().all(|corner| is_near(*corner)) {
-                    return None;
-                }
-                moving = moving.into_iter().chain(Bounds::around(corners)).reduce(|a, b| a.union(&b));
-            }
+        let moving = self.motion.reach(self.moving_boxes());
+        let moving = moving.map(|b| Bounds { min: b.min.as_vec3(), max: b.max.as_vec3() });
+        if moving.is_some_and(|bounds| !(is_near(bounds.min) && is_near(bounds.max))) {
+            return None;
         }
         let all = [(self.still_triangles > 0).then_some(still), moving];
         Some(all.into_iter().flatten().reduce(|a, b| a.union(&b)).unwrap_or_default())
     }
 
-    /// For each moving instance: its node, and the box of its mesh in its own space.
-    fn moving_boxes(&self) -> Vec<(usize, Bounds)> {
-        let mut corners: Vec<Vec<glam::Vec3>> = vec![Vec::new(); self.instances.len()];
+    /// For each moving node the box of the meshes that it carries, in its own space.
+    fn moving_boxes(&self) -> Vec<Option<Cuboid>> {
+        let mut of_instance: Vec<Option<Cuboid>> = vec![None; self.instances.len()];
         for triangle in &self.triangles[self.still_triangles..] {
-            let ends = [triangle.a, triangle.b, triangle.c].map(|i| self.vertices[i as usize].position);
-            corners[triangle.instance as usize].extend(ends);
-        }
-        let mut boxes = Vec::new();
-        for (node, moving) in self.motion.nodes.iter().enumerate() {
-            for carried in &moving.carries {
-                if let Carried::Instance(index) = *carried {
-                    boxes.extend(Bounds::around(std::mem::take(&mut corners[index])).map(|b| (node, b)));
-                }
+            for corner in [triangle.a, triangle.b, triangle.c] {
+                let point = self.vertices[corner as usize].position.as_dvec3();
+                let slot = &mut of_instance[triangle.instance as usize];
+                let point = Cuboid { min: point, max: point };
+                *slot = Some(slot.map_or(point, |bounds| bounds.union(&point)));
             }
         }
-        boxes
+        let carried = |node: &MovingNode| {
+            let instances = node.carries.iter().filter_map(|carried| match *carried {
+                Carried::Instance(index) => of_instance.get(index).copied().flatten(),
+                Carried::Light(_) | Carried::Camera(_) => None,
+            });
+            instances.reduce(|a, b| a.union(&b))
+        };
+        self.motion.nodes.iter().map(carried).collect()
     }
 }
 

@@ -35,9 +35,9 @@ use super::gltf;
 use super::layout::Light;
 use super::motion::Request;
 use super::{Scene, lights};
+use crate::problem::ron::RonFile;
 use crate::problem::{Place, Problem, Problems, Result, Source};
 use glam::{DVec3, Vec3};
-use ron::error::{Error, Position, SpannedError};
 use ron::value::RawValue;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
@@ -155,10 +155,9 @@ fn one() -> f32 {
 /// What the setting at `path` says about itself. It need not be right in what it adds.
 pub(super) fn about(path: &Path) -> Result<About> {
     let source = read(path)?;
-    let setting: Setting = parse(&source, source.text(), 0)?;
-    let gltf = parse_raw::<String>(&source, setting.gltf)?;
-    let model =
-        candidates(&gltf, &place(&source, setting.gltf), path)?.into_iter().find(|path| path.is_file());
+    let setting: Setting = source.parse()?;
+    let gltf = source.value::<String>(setting.gltf)?;
+    let model = candidates(&gltf, &source.place(setting.gltf), path)?.into_iter().find(|path| path.is_file());
     let (lights, cameras) = (setting.lights.len(), setting.cameras.len());
     let Setting { about, licence, get, .. } = setting;
     Ok(About { about, licence, get, gltf, model, lights, cameras })
@@ -167,7 +166,7 @@ pub(super) fn about(path: &Path) -> Result<About> {
 /// The scene of the setting at `path`, still without views.
 pub(super) fn load(path: &Path) -> Result<Scene> {
     let source = read(path)?;
-    let setting: Setting = parse(&source, source.text(), 0)?;
+    let setting: Setting = source.parse()?;
     let mut problems = Vec::new();
     let mut keep = |problem| problems.push(problem);
     let cameras: Vec<Camera> =
@@ -197,14 +196,14 @@ pub(super) fn load(path: &Path) -> Result<Scene> {
     Ok(scene)
 }
 
-fn read(path: &Path) -> Result<Source> {
+fn read(path: &Path) -> Result<RonFile> {
     let name = path.display().to_string();
     let wrong = |why: &str| Problem::input("setting", format!("`{name}` is no setting: {why}"));
     if path.metadata().is_ok_and(|metadata| metadata.len() > MOST_BYTES) {
         return Err(wrong("it is larger than 1 MiB").into());
     }
     let text = String::from_utf8(gltf::read(path)?).map_err(|_| wrong("it is not UTF-8"))?;
-    Ok(Source::new(name, text))
+    Ok(RonFile { source: Source::new(name, text), code: "setting", what: "the setting" })
 }
 
 /// Where the file may be that the setting at `path` names, the best place first; `place` is where it does.
@@ -223,9 +222,9 @@ fn candidates(name: &str, place: &Place, path: &Path) -> Result<Vec<PathBuf>, Pr
 }
 
 /// The glTF file that the setting at `path` names.
-fn model(source: &Source, setting: &Setting, path: &Path) -> Result<PathBuf, Problem> {
-    let place = place(source, setting.gltf);
-    let name: String = parse_raw(source, setting.gltf)?;
+fn model(source: &RonFile, setting: &Setting, path: &Path) -> Result<PathBuf, Problem> {
+    let place = source.place(setting.gltf);
+    let name: String = source.value(setting.gltf)?;
     let found = candidates(&name, &place, path)?.into_iter().find(|path| path.is_file());
     found.ok_or_else(|| {
         let message = format!("there is no {} beside the setting, nor in {SCENES}", place.text());
@@ -239,13 +238,13 @@ fn model(source: &Source, setting: &Setting, path: &Path) -> Result<PathBuf, Pro
 
 /// The environment, and the file that it is in.
 fn environment(
-    source: &Source,
+    source: &RonFile,
     raw: &RawValue,
     path: &Path,
 ) -> Result<(Environment, Option<PathBuf>), Problem> {
-    let at = place(source, raw);
+    let at = source.place(raw);
     let wrong = |message: String| Problem::input("setting-value", message).at(&at, "this environment");
-    match parse_raw(source, raw)? {
+    match source.value(raw)? {
         EnvironmentEntry::Constant { radiance } => {
             Ok((Environment::constant(Vec3::from(radiance)).map_err(wrong)?, None))
         }
@@ -265,10 +264,10 @@ fn environment(
     }
 }
 
-fn camera(source: &Source, raw: &RawValue) -> Result<Camera, Problem> {
-    let entry: CameraEntry = parse_raw(source, raw)?;
+fn camera(source: &RonFile, raw: &RawValue) -> Result<Camera, Problem> {
+    let entry: CameraEntry = source.value(raw)?;
     let wrong =
-        |message: &str| Problem::input("setting-value", message).at(&place(source, raw), "this camera");
+        |message: &str| Problem::input("setting-value", message).at(&source.place(raw), "this camera");
     if !(entry.fov_degrees > 0.0 && entry.fov_degrees < 180.0) {
         return Err(wrong("`fov_degrees` must be between 0 and 180"));
     }
@@ -286,8 +285,8 @@ fn camera(source: &Source, raw: &RawValue) -> Result<Camera, Problem> {
     }
 }
 
-fn light(source: &Source, raw: &RawValue) -> Result<(Light, Option<Request>), Problem> {
-    let (light, course) = match parse_raw(source, raw)? {
+fn light(source: &RonFile, raw: &RawValue) -> Result<(Light, Option<Request>), Problem> {
+    let (light, course) = match source.value(raw)? {
         LightEntry::Point { position, intensity, motion } => {
             (lights::point(position.into(), Vec3::from(intensity)), motion)
         }
@@ -300,7 +299,7 @@ fn light(source: &Source, raw: &RawValue) -> Result<(Light, Option<Request>), Pr
             (lights::directional(direction.into(), Vec3::from(irradiance)), motion)
         }
     };
-    let at = place(source, raw);
+    let at = source.place(raw);
     let wrong = |message: String| Problem::input("setting-value", message).at(&at, "this light");
     let request = course
         .map(|course| course::request(String::new(), course, at.clone()).map_err(&wrong))
@@ -308,47 +307,9 @@ fn light(source: &Source, raw: &RawValue) -> Result<(Light, Option<Request>), Pr
     Ok((light.map_err(&wrong)?, request))
 }
 
-fn motion(source: &Source, raw: &RawValue) -> Result<Request, Problem> {
-    let MotionEntry { node, axis, pivot, interpolation, keys } = parse_raw(source, raw)?;
-    let at = place(source, raw);
+fn motion(source: &RonFile, raw: &RawValue) -> Result<Request, Problem> {
+    let MotionEntry { node, axis, pivot, interpolation, keys } = source.value(raw)?;
+    let at = source.place(raw);
     course::request(node, Course { axis, pivot, interpolation, keys }, at.clone())
         .map_err(|message| Problem::input("setting-value", message).at(&at, "this motion"))
-}
-
-/// Where a raw value stands: it is a piece of the source's own text.
-fn place(source: &Source, raw: &RawValue) -> Place {
-    let text = raw.trim().get_ron();
-    let start = text.as_ptr() as usize - source.text().as_ptr() as usize;
-    source.at(start..start + text.len())
-}
-
-fn parse_raw<T: for<'a> Deserialize<'a>>(source: &Source, raw: &RawValue) -> Result<T, Problem> {
-    let place = place(source, raw);
-    parse(source, place.text(), place.span.start)
-}
-
-/// Parses the piece `text` of the source, which starts at byte `offset`.
-fn parse<'a, T: Deserialize<'a>>(source: &Source, text: &'a str, offset: usize) -> Result<T, Problem> {
-    // `pivot: (0, 1, 0)` without `Some(…)`, as in pipelines.
-    let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
-    options.from_str(text).map_err(|error| {
-        let SpannedError { code, span } = error;
-        let range = offset + byte(text, span.start)..offset + byte(text, span.end);
-        let problem = Problem::input("setting", format!("the setting can't be read: {code}"));
-        let problem = problem.at(&source.at(range), "here");
-        match &code {
-            Error::NoSuchStructField { expected, found, .. }
-            | Error::NoSuchEnumVariant { expected, found, .. } => {
-                problem.suggest(found, expected.iter().copied())
-            }
-            _ => problem,
-        }
-    })
-}
-
-/// Byte of a position, whose line and column (in characters) count from 1.
-fn byte(text: &str, position: Position) -> usize {
-    let line: usize = text.split_inclusive('\n').take(position.line.saturating_sub(1)).map(str::len).sum();
-    let column = text[line..].chars().take(position.col.saturating_sub(1));
-    line + column.map(char::len_utf8).sum::<usize>()
 }

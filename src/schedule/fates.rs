@@ -24,7 +24,8 @@ pub(super) fn decide(work: &Work, uses: &Uses, drop: bool) -> Decided {
             }
             let written = || uses.of_task[task].iter().filter(|each| each.write).map(|each| each.cell);
             let harmed = names(work, uses, written().filter(|&cell| reads_live(cell)));
-            if !drop && harmed.is_empty() {
+            let unbound = work.tasks[task].off.is_some() && work.tasks[task].touches.is_empty();
+            if !drop && harmed.is_empty() && !unbound {
                 return None;
             }
             let mut reason = match &work.tasks[task].off {
@@ -34,7 +35,9 @@ pub(super) fn decide(work: &Work, uses: &Uses, drop: bool) -> Decided {
                     names => format!("nothing that an output needs reads what it writes ({names})"),
                 },
             };
-            if !drop {
+            if !drop && unbound {
+                reason += ", and there is nothing that it could be bound to";
+            } else if !drop {
                 reason += &format!(", and running it all the same could change {harmed}");
             }
             Some(reason)

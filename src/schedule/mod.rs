@@ -146,7 +146,7 @@ pub struct Task {
     pub touches: Vec<Touch>,
     /// What it depends on by itself, not through what it reads: bits of causes and of named values.
     pub depends: BTreeSet<u32>,
-    /// `Some`: its condition fails, for this reason.
+    /// `Some`: its condition fails, for this reason. One that touches nothing can't be run even without dropping.
     pub off: Option<String>,
 }
 

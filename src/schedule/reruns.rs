@@ -11,7 +11,7 @@
 //!    run again only when the cell is written again, so the cell depends on all that it does.
 //! 4. If the content goes on from frame to frame, what such a task sees is the state that earlier frames left,
 //!    which differs from frame to frame: it depends on [`FRAME`]. Not so if the item is promised to be
-//!    [`Steady`](super::Start::Steady): then that state changes only with what its writers depend on.
+//!    [`Steady`](super::Start::Steady), and all that the task writes too: then neither changes by running again.
 //!
 //! Reads after the last write need no more than rule 2, even if the content goes on: writing the same again onto what
 //! was written by the same tasks leaves the same, since a task that only writes does not see what was there.
@@ -52,6 +52,13 @@ pub(super) fn reruns(work: &Work, uses: &Uses, options: &Options) -> Reruns {
     }
     bits.resize_with(all, BTreeSet::new);
 
+    // What only steady items hold of a task's results is as it was when the task runs again; anything else it writes
+    // shows what it found this time.
+    let steady = |cell: usize| work.items[uses.cells[cell].item].start == Start::Steady;
+    let settled: Vec<bool> = (0..work.tasks.len())
+        .map(|task| uses.of_task[task].iter().all(|each| !each.write || steady(each.cell)))
+        .collect();
+
     let mut depends: DiGraph<(), ()> = DiGraph::with_capacity(all, all);
     let nodes: Vec<NodeIndex> = (0..all).map(|_| depends.add_node(())).collect();
     for (cell, &Cell { item, .. }) in uses.cells.iter().enumerate() {
@@ -68,7 +75,7 @@ pub(super) fn reruns(work: &Work, uses: &Uses, options: &Options) -> Reruns {
             if each.write || first < each.task || goes_on {
                 depends.add_edge(nodes[each.task], node, ());
             }
-            if early && goes_on && work.items[item].start != Start::Steady {
+            if early && goes_on && !(work.items[item].start == Start::Steady && settled[each.task]) {
                 bits[each.task].insert(FRAME);
             }
         }

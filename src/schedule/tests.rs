@@ -90,6 +90,37 @@ fn who_reads_the_frame_before_runs_in_each_frame() {
     assert_eq!(reruns(&schedule(&after, &all(&[5])).unwrap()), [[5], [5]]);
 }
 
+/// What is promised to be steady is kept where all that its readers write is so too; a reader that shows what it finds
+/// there before it is written again shows another thing one frame later.
+#[test]
+fn steady_state_is_kept_but_not_what_shows_it_early() {
+    let of = |tasks| Work {
+        items: items(&[Start::Steady, Start::Steady, Start::Covered]),
+        tasks,
+        outputs: vec![cell(2)],
+    };
+    let clear = || task("clear", &[0, 1], &[0], &[]);
+    let add = || task("add", &[], &[0, 1], &[5]);
+    let kept = of(vec![clear(), add(), task("show", &[0], &[2], &[])]);
+    assert_eq!(reruns(&schedule(&kept, &all(&[5])).unwrap()), [[5], [5], [5]]);
+    let early = of(vec![task("show", &[0], &[2], &[]), clear(), add()]);
+    assert_eq!(reruns(&schedule(&early, &all(&[5])).unwrap())[0], [FRAME]);
+}
+
+/// A stage that is off and could not be bound stays off without dropping.
+#[test]
+fn what_is_bound_to_nothing_never_runs() {
+    let mut work = Work {
+        items: items(&[Start::Fill]),
+        tasks: vec![task("nothing", &[], &[], &[]), task("show", &[], &[0], &[])],
+        outputs: vec![cell(0)],
+    };
+    work.tasks[0].off = Some("no elements".to_owned());
+    let found = schedule(&work, &Options { drop: false, ..all(&[]) }).unwrap();
+    let reason = "no elements, and there is nothing that it could be bound to";
+    assert_eq!(found.fates[0], Fate::Dropped(reason.to_owned()));
+}
+
 #[test]
 fn what_is_dropped_says_why() {
     let mut work = Work {

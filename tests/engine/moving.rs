@@ -73,8 +73,7 @@ fn sixty_frames_of_a_moving_scene() {
     (kept.request.keep, kept.request.varying) = (true, play::varies(&scene, 0));
     let all = small(&scene);
     let (mut kept, mut all) = (kept.start(gpu()).expect("a run"), all.start(gpu()).expect("a run"));
-    let camera = scene.cameras[0].clone();
-    let mut plays = [&kept, &all].map(|run| Play::new(scene.clone(), camera.clone(), [24, 24], &run.frame));
+    let mut plays = [&kept, &all].map(|run| Play::new(scene.clone(), 0, [24, 24], &run.frame));
     let mut still_ran = 0;
     let mut pictures = BTreeSet::new();
     for frame in 0..60 {

@@ -2,7 +2,7 @@
 
 use super::models::{Model, folder};
 use glam::{DVec2, DVec3, Mat4, Vec3};
-use voxgi::scene::layout::{UNLIT, Vertex};
+use voxgi::scene::layout::{DOUBLE_SIDED, UNLIT, Vertex};
 
 /// Of an image reference; see `voxgi::scene::Image::reference`.
 const SECOND_UV: u32 = 1 << 6;
@@ -138,7 +138,7 @@ fn emissive_strength_and_unlit() {
     emissions.sort_by(f32::total_cmp);
     assert_eq!(emissions, [1.0, 2.0, 4.0, 8.0, 16.0].map(|strength| 0.9 * strength));
     let scene = load(&folder.join("UnlitTest.glb")).expect("it loads");
-    assert!(scene.materials.iter().all(|material| material.flags == UNLIT));
+    assert!(scene.materials.iter().all(|material| material.flags == UNLIT | DOUBLE_SIDED));
 }
 
 /// For each arrow how far it points from the target of its colour, in degrees, at worst.

@@ -28,7 +28,7 @@ impl Watched {
         let frame = started(&scene, "where", [3, 1], varying);
         let camera = scene.cameras[0].clone();
         let cameras = orbit(&camera, &scene.bounds, turn, frames);
-        let play = Play::new(scene, camera, [3, 1], &frame);
+        let play = Play::new(scene, 0, [3, 1], &frame);
         Self { frame, play, cameras, everything, after: 0 }
     }
 

@@ -62,17 +62,28 @@ pub fn read(json: &Json, pointer: &str, notes: &mut Notes) -> Material {
     if matches!(json.alpha_mode, Checked::Invalid) {
         notes.fault(format_args!("{pointer}/alphaMode"), Fault::new("gltf-value", "no such alpha mode"));
     }
-    let unlit = extensions.is_some_and(|e| e.unlit.is_some());
     Material {
         base_color: Vec3::new(r, g, b),
         alpha_cutoff: alpha_cutoff(json, alpha),
         emission: Vec3::new(er, eg, eb) * strength,
-        flags: if json.double_sided { DOUBLE_SIDED } else { 0 } | if unlit { UNLIT } else { 0 },
+        flags: if json.double_sided { DOUBLE_SIDED } else { 0 } | if is_unlit(json) { UNLIT } else { 0 },
         metallic,
         roughness,
         normal_scale,
         ..default()
     }
+}
+
+fn is_unlit(json: &Json) -> bool {
+    json.extensions.as_ref().is_some_and(|e| e.unlit.is_some())
+}
+
+/// An unlit surface has its colour whatever the light and from wherever it is seen: it emits that colour on both sides,
+/// and reflects nothing.
+fn glow(material: &mut Material) {
+    material.emission = std::mem::replace(&mut material.base_color, Vec3::ZERO);
+    (material.emission_image, material.emission_uv) = (material.base_color_image, material.base_color_uv);
+    material.flags |= DOUBLE_SIDED;
 }
 
 /// What a texel's alpha must reach. The factor on alpha is the same for all texels, so it divides the cutoff instead;
@@ -117,6 +128,9 @@ pub fn finish(
         };
         *reference = textures.images[image].reference(sampling);
         *uv = transform.unwrap_or(IDENTITY);
+    }
+    if is_unlit(json) {
+        glow(material);
     }
     if matches!(json.alpha_mode, Checked::Valid(AlphaMode::Blend)) {
         notes.lack("translucent material", "rendered opaque");

@@ -117,6 +117,8 @@ impl Meshes {
         };
         self.latest = Some((*attributes, Rc::clone(&read)));
         let corners = corners(file, pointer, primitive, mode, read.plain.len() as u32, notes)?;
+        // Corners of their own, twice over, and what making tangents takes.
+        notes.catch(pointer, file.budget.pass(corners.len() as u64 * 3 * 400))?;
         let (mut vertices, mut corners) = match attributes.normals {
             Some(_) => {
                 let mut vertices = Vertices::clone(&read);

@@ -29,9 +29,9 @@ mod texture;
 pub(super) mod uri;
 mod vertices;
 
-use super::Scene;
 use super::layout::{Instance, Triangle};
 use super::motion::{self, Carried};
+use super::{Lack, Scene};
 use crate::problem::{Problem, Problems, Result};
 use file::File;
 pub(super) use file::read;
@@ -97,6 +97,12 @@ pub(super) fn load(path: &Path, added: &[motion::Request]) -> Result<Scene> {
         None => notes.fault("/nodes", Fault::new("gltf-value", "the scene reaches farther than 10¹⁸ m")),
     }
     scene.lacks = notes.finish()?;
+    for name in file.root.extensions_used.iter().filter(|name| !understood(name)) {
+        if !scene.lacks.iter().any(|lack| lack.what.contains(name)) {
+            let what = format!("extension {name}");
+            scene.lacks.push(Lack { what, count: 1, instead: "not read".to_owned() });
+        }
+    }
     Ok(scene)
 }
 
@@ -104,12 +110,19 @@ pub(super) fn load(path: &Path, added: &[motion::Request]) -> Result<Scene> {
 fn named(root: &Root, nodes: &[Placed], added: &[motion::Request]) -> Result<()> {
     let known = || nodes.iter().filter_map(|placed| root.nodes[placed.index].name.as_deref());
     let missing = added.iter().filter(|request| !known().any(|name| name == request.node));
+    let twice =
+        added.iter().enumerate().filter(|(i, r)| added[..*i].iter().any(|other| other.node == r.node));
+    let twice = twice.map(|(_, request)| {
+        Problem::input("setting-node", format!("the node {:?} is moved twice", request.node))
+            .at(&request.place, "again here")
+            .help("put all keys into one motion")
+    });
     let problem = |request: &motion::Request| {
         Problem::input("setting-node", format!("the scene has no node {:?}", request.node))
             .at(&request.place, "moved here")
             .suggest(&request.node, known())
     };
-    Problems::check(missing.map(problem).collect()).map(|_| ())
+    Problems::check(missing.map(problem).chain(twice).collect()).map(|_| ())
 }
 
 struct Builder<'a> {

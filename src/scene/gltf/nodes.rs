@@ -23,8 +23,8 @@ pub struct Movers<'a> {
     pub added: &'a [motion::Request],
 }
 
-/// The nodes of the default scene, and those of them that move; parents before children: of scene 0 where the file names none, and all nodes where it
-/// has no scenes. Loops and nodes with two parents are faults.
+/// The nodes of the default scene, and those of them that move; parents before children. Scene 0 is taken where the file
+/// names none, and all nodes where it has no scenes. Loops and nodes with two parents are faults.
 pub fn placed<'a>(root: &'a Root, mut movers: Movers<'_>, notes: &mut Notes) -> (Vec<Placed<'a>>, Motion) {
     let count = root.nodes.len();
     let parents = parents(root, notes);
@@ -118,11 +118,12 @@ impl Pose {
         if node.matrix.is_some() {
             return Self::Matrix(local);
         }
-        let (scale, rotation, translation) = local.to_scale_rotation_translation();
+        let rotation = node.rotation.unwrap_or_default().0.map(f64::from);
+        let rotation = DQuat::from_array(rotation);
         Self::Parts {
-            translation,
-            rotation: node.rotation.map_or(rotation, |r| DQuat::from_array(r.0.map(f64::from)).normalize()),
-            scale: node.scale.map_or(scale, vector),
+            translation: vector(node.translation.unwrap_or_default()),
+            rotation: if rotation.length() > 1e-6 { rotation.normalize() } else { DQuat::IDENTITY },
+            scale: vector(node.scale.unwrap_or([1.0; 3])),
         }
     }
 }

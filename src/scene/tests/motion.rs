@@ -198,3 +198,57 @@ fn mistakes_in_motion_are_pointed_at() {
         assert!(said.contains(word) && !problem.labels.is_empty(), "{more}: {said}");
     }
 }
+
+/// A box that is followed up the hierarchy holds everything at any times of motions that don't keep step, mirrored and
+/// grown from nothing too; and rest poses are what still nodes have.
+#[test]
+fn motions_out_of_step_stay_within_the_bounds() {
+    let folder = tempfile::tempdir().unwrap();
+    let document = serde_json::json!({
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}],
+        "nodes": [
+            {"scale": [1, -1, 1], "children": [1], "translation": [1, 0, 0]},
+            {"name": "flag", "scale": [-1, -1, -1], "mesh": 0, "translation": [0, 2, 0]},
+        ],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [
+            {"bufferView": 0, "componentType": 5126, "type": "VEC3", "count": 3},
+            {"bufferView": 1, "componentType": 5126, "type": "SCALAR", "count": 2},
+            {"bufferView": 2, "componentType": 5126, "type": "VEC3", "count": 2},
+        ],
+        "bufferViews": [
+            {"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 8},
+            {"buffer": 0, "byteOffset": 44, "byteLength": 24},
+        ],
+        "buffers": [{"byteLength": 68, "uri": "data.bin"}],
+        "animations": [{
+            "samplers": [{"input": 1, "output": 2}],
+            "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+        }],
+    });
+    let numbers: [f32; 17] = [
+        0., 0., 0., 1., 0., 0., 0., 1., 0., /* times */ 0., 2., /* from, to */ 1., 0., 0., 5., 0.,
+        0.,
+    ];
+    let bytes: Vec<u8> = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
+    std::fs::write(folder.path().join("data.bin"), bytes).unwrap();
+    std::fs::write(folder.path().join("flag.gltf"), document.to_string()).unwrap();
+    let setting = r#"Setting(gltf: "flag.gltf", motion: [(node: "flag", axis: (0, 0, 1), pivot: (0, 0, 0),
+        keys: [(time: 0), (time: 3, degrees: 170, offset: (0, 0, 1))])])"#;
+    let path = folder.path().join("flag.ron");
+    std::fs::write(&path, setting).unwrap();
+    let mut scene = scene::load(&path).unwrap();
+    // At rest: (x, y, z) → (−x, 2 − y, −z) in the parent, which mirrors y and stands at 1.
+    let expected = [Vec3::new(1.0, -2.0, 0.0), Vec3::new(0.0, -2.0, 0.0), Vec3::new(1.0, -1.0, 0.0)];
+    for (found, expected) in corners(&scene).iter().zip(expected) {
+        assert!((*found - expected).length() < 1e-6, "{found} {expected}");
+    }
+    let slack = 2e-2 * scene.bounds.diagonal() as f32;
+    for i in 0..600 {
+        scene.pose(f64::from(i) * 0.01);
+        for corner in corners(&scene) {
+            let (low, high) = (scene.bounds.min - slack, scene.bounds.max + slack);
+            assert!(corner.cmpge(low).all() && corner.cmple(high).all(), "{i}: {corner} {:?}", scene.bounds);
+        }
+    }
+}
