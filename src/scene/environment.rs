@@ -60,7 +60,7 @@ impl Environment {
         if width == 0 || height == 0 {
             return Err(format!("it has no texels: {width} × {height}"));
         }
-        let wrong = |t: &Vec4| !(t.min_element() >= 0.0 && t.max_element() <= BRIGHTEST);
+        let wrong = |t: &Vec4| !(t.is_finite() && t.min_element() >= 0.0 && t.max_element() <= BRIGHTEST);
         if let Some(index) = texels.iter().position(wrong) {
             let (x, y) = (index as u32 % width, index as u32 / width);
             return Err(format!("the radiance at column {x}, row {y} is negative, or beyond {BRIGHTEST:e}"));
