@@ -140,7 +140,7 @@ fn materials() {
                 "baseColorFactor": [0.1, 0.2, 0.3, 0.5], "metallicFactor": 0.25, "roughnessFactor": 0.75,
             },
             "emissiveFactor": [1, 0.5, 0], "alphaMode": "MASK", "alphaCutoff": 0.2, "doubleSided": true,
-            "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 8}, "KHR_materials_unlit": {}},
+            "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 8}},
         },
         {"alphaMode": "MASK", "pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 0]}},
         {"alphaMode": "MASK"},
@@ -151,11 +151,16 @@ fn materials() {
     assert_eq!(first.base_color, Vec3::new(0.1, 0.2, 0.3));
     assert_eq!(first.emission, Vec3::new(8.0, 4.0, 0.0));
     assert_eq!((first.metallic, first.roughness), (0.25, 0.75));
-    assert_eq!(first.flags, DOUBLE_SIDED | UNLIT);
+    assert_eq!(first.flags, DOUBLE_SIDED);
     // 0.5 × alpha ≥ 0.2 where alpha ≥ 0.4.
     assert!((first.alpha_cutoff - 0.4).abs() < 1e-6);
     assert!(scene.materials[1].alpha_cutoff > 1.0, "nothing is left of it");
     assert_eq!((scene.materials[2].alpha_cutoff, scene.materials[3].alpha_cutoff), (0.5, 0.0));
+    // An unlit surface gives off its colour and reflects nothing.
+    document["materials"][0]["extensions"] = json!({"KHR_materials_unlit": {}});
+    let unlit = load(&document).unwrap().materials[0];
+    assert_eq!((unlit.base_color, unlit.emission), (Vec3::ZERO, Vec3::new(0.1, 0.2, 0.3)));
+    assert_eq!(unlit.flags, DOUBLE_SIDED | UNLIT);
 }
 
 #[test]
