@@ -62,7 +62,9 @@ impl Play {
             frame.facts().put_views(&self.scene.views);
             changed.insert(bit(Cause::Lights));
         }
-        if let Some(camera) = self.through.and_then(|index| self.scene.cameras.get(index)).cloned() {
+        if moved.cameras
+            && let Some(camera) = self.through.and_then(|index| self.scene.cameras.get(index)).cloned()
+        {
             changed.extend(self.see(frame, &camera)?);
         }
         Ok(changed)

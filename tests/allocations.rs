@@ -3,11 +3,11 @@
 //! A global allocator takes a backtrace of each allocation while it is asked to. Whose it is says the innermost frame in
 //! the files of wgpu or of the engine: what wgpu allocates is wgpu's, unless it does so through a closure of the engine.
 
-#[path = "engine/bench.rs"]
-#[allow(dead_code)]
-mod bench;
+#[path = "support/job.rs"]
+mod job;
 
 use backtrace::Backtrace;
+use job::Job;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -97,24 +97,24 @@ fn alone() -> impl Drop {
     LOCK.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn job<'a>(scene: &'a voxgi::scene::Scene, pipeline: &str) -> bench::Job<'a> {
-    bench::Job::new(scene, pipeline, [16, 16]).set("resolution", "16").set("light_map_size", "16")
+fn small<'a>(scene: &'a voxgi::scene::Scene, pipeline: &str) -> Job<'a> {
+    Job::new(scene, pipeline, [16, 16]).set("resolution", "16").set("light_map_size", "16")
 }
 
 #[test]
 fn a_frame_in_steady_state_allocates_nothing_of_its_own() {
     let _alone = alone();
-    let scene = bench::scene("cornell-box");
-    for pipeline in bench::shipped() {
+    let scene = job::scene("cornell-box");
+    for pipeline in job::shipped() {
         let poison = Some(voxgi::frame::Poison::Ones);
         let jobs = [
-            ("as it is", job(&scene, &pipeline)),
-            ("keeping", job(&scene, &pipeline).keep(&[voxgi::document::Cause::Camera])),
-            ("by the wall clock", bench::Job { wall_clock: true, ..job(&scene, &pipeline) }),
-            ("poisoned", bench::Job { poison, ..job(&scene, &pipeline) }),
+            ("as it is", small(&scene, &pipeline)),
+            ("keeping", small(&scene, &pipeline).keep(&[voxgi::document::Cause::Camera])),
+            ("by the wall clock", Job { wall_clock: true, ..small(&scene, &pipeline) }),
+            ("poisoned", Job { poison, ..small(&scene, &pipeline) }),
         ];
         for (way, job) in jobs {
-            let mut run = job.start(bench::gpu()).expect("a run");
+            let mut run = job.start(job::gpu()).expect("a run");
             run.frames(3).expect("frames");
             let mut encode: Vec<f64> = Vec::new();
             let found = allocations(|| run.frames(2).expect("frames"));
@@ -159,8 +159,8 @@ fn resident_bytes() -> u64 {
 #[test]
 fn a_thousand_frames_take_no_more_memory_than_a_few() {
     let _alone = alone();
-    let scene = bench::scene("cornell-point");
-    let mut run = job(&scene, "cones").set("bounces", "1").start(bench::gpu()).expect("a run");
+    let scene = job::scene("cornell-point");
+    let mut run = small(&scene, "cones").set("bounces", "1").start(job::gpu()).expect("a run");
     run.frames(100).expect("frames");
     let before = resident_bytes();
     run.frames(1000).expect("frames");

@@ -1,22 +1,15 @@
 //! The generated scenes, the settings, and the scenes that `VOXGI_SCENES` names.
 
+#[path = "support/scenes.rs"]
+mod support;
+
 use glam::Vec3;
 use std::panic::catch_unwind;
 use std::path::{Path, PathBuf};
+use support::scenes;
 use voxgi::scene::layout::{DIRECTIONAL, POINT};
 use voxgi::scene::listing::list;
 use voxgi::scene::{Scene, generate, load};
-
-/// The folder of `VOXGI_SCENES`; without it the test is skipped, or fails if `VOXGI_REQUIRE_SCENES` is 1.
-fn scenes() -> Option<PathBuf> {
-    let folder = std::env::var_os("VOXGI_SCENES").map(PathBuf::from).filter(|folder| folder.is_dir());
-    if folder.is_none() {
-        let required = std::env::var("VOXGI_REQUIRE_SCENES").is_ok_and(|value| value == "1");
-        assert!(!required, "VOXGI_SCENES names no folder, and VOXGI_REQUIRE_SCENES=1 wants one");
-        eprintln!("skipped: VOXGI_SCENES names no folder of scenes");
-    }
-    folder
-}
 
 fn own(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes").join(name)

@@ -255,7 +255,9 @@ fn environment(
             let found = candidates(&file, &at, path)?.into_iter().find(|path| path.is_file());
             let found = found.ok_or_else(|| {
                 let message = format!("there is no {file:?} beside the setting, nor in {SCENES}");
-                Problem::input("setting-file", message).at(&at, "not found")
+                Problem::input("setting-file", message)
+                    .at(&at, "not found")
+                    .help(format!("set {SCENES} to the folder that has it"))
             })?;
             let read = Environment::read(&found, strength);
             let read = read.map_err(|why| wrong(format!("{file:?} gives no environment: {why}")))?;

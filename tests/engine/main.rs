@@ -8,6 +8,8 @@ mod computing;
 mod drawing;
 mod faults;
 mod graphs;
+#[path = "../support/job.rs"]
+mod job;
 mod looping;
 mod moving;
 mod omitting;

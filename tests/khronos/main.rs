@@ -7,3 +7,5 @@ mod models;
 mod normals;
 mod pictures;
 mod shot;
+#[path = "../support/scenes.rs"]
+mod support;

@@ -1,19 +1,13 @@
 //! The models' files, read without the loader, and edited.
 
+use crate::support::scenes;
 use serde_json::Value;
 use std::path::PathBuf;
 use tempfile::TempDir;
 
-/// The folder of the models; without it the test is skipped, or fails if `VOXGI_REQUIRE_SCENES` is 1.
+/// The folder of the models; without it the test is skipped.
 pub fn folder() -> Option<PathBuf> {
-    let folder = std::env::var_os("VOXGI_SCENES").map(|folder| PathBuf::from(folder).join("khronos"));
-    let folder = folder.filter(|folder| folder.is_dir());
-    if folder.is_none() {
-        let required = std::env::var("VOXGI_REQUIRE_SCENES").is_ok_and(|value| value == "1");
-        assert!(!required, "VOXGI_SCENES names no folder with `khronos` in it");
-        eprintln!("skipped: VOXGI_SCENES names no folder of scenes");
-    }
-    folder
+    scenes().map(|folder| folder.join("khronos"))
 }
 
 /// A binary glTF file.

@@ -1,8 +1,8 @@
 //! The files of `VOXGI_SCENES/bad`, with the verdicts of gltf-validator in `INDEX.tsv`.
 
 use crate::process::load;
+use crate::support::scenes;
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
@@ -11,17 +11,6 @@ const CLEAN_BUT_REFUSED: [(&str, &str); 2] = [
     ("validator/root/named_objects.gltf", "it draws a mesh whose buffer has no content"),
     ("validator/root/unused_objects.gltf", "it draws a mesh whose buffer has no content"),
 ];
-
-/// The folder of `VOXGI_SCENES`; without it the test is skipped, or fails if `VOXGI_REQUIRE_SCENES` is 1.
-fn scenes() -> Option<PathBuf> {
-    let folder = std::env::var_os("VOXGI_SCENES").map(PathBuf::from).filter(|folder| folder.is_dir());
-    if folder.is_none() {
-        let required = std::env::var("VOXGI_REQUIRE_SCENES").is_ok_and(|value| value == "1");
-        assert!(!required, "VOXGI_SCENES names no folder, and VOXGI_REQUIRE_SCENES=1 wants one");
-        eprintln!("skipped: VOXGI_SCENES names no folder of scenes");
-    }
-    folder
-}
 
 #[test]
 fn no_file_does_harm_and_clean_ones_load() {

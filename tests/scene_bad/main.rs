@@ -8,3 +8,5 @@
 mod folder;
 mod hostile;
 mod process;
+#[path = "../support/scenes.rs"]
+mod support;

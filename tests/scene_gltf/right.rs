@@ -277,6 +277,32 @@ fn what_is_lacking_is_said() {
     );
 }
 
+/// What moves and can't be played is said: tracks of a node with a matrix, channels that move no node.
+#[test]
+fn motion_that_is_not_played_is_said() {
+    let times = floats(&[0., 1.]);
+    let values = floats(&[0., 0., 0., 5., 0., 0.]);
+    let mut document = document(&[
+        ("POSITION", floats(&TRIANGLE), 5126, "VEC3", 3),
+        ("times", times, 5126, "SCALAR", 2),
+        ("values", values, 5126, "VEC3", 2),
+    ]);
+    document["meshes"][0]["primitives"][0]["attributes"] = json!({"POSITION": 0});
+    let channel = json!({"sampler": 0, "target": {"node": 0, "path": "translation"}});
+    let pointer = json!({"sampler": 0, "target": {"path": "pointer"}});
+    let sampler = json!({"input": 1, "output": 2});
+    document["animations"] = json!([{"channels": [channel, pointer], "samplers": [sampler]}]);
+    let scene = load(&document).unwrap();
+    assert_eq!(lacks(&scene), ["1 animation of something that is no node is not played"]);
+    assert_eq!((scene.still_triangles, scene.motion.duration()), (0, 1.0), "the other channel is played");
+    document["nodes"][0]["matrix"] = json!([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3, 0, 0, 1]);
+    document["animations"][0]["channels"] = json!([channel]);
+    let scene = load(&document).unwrap();
+    assert_eq!(lacks(&scene), ["1 animation of a node that has a matrix is not played"]);
+    assert_eq!((scene.still_triangles, scene.motion.duration()), (1, 0.0));
+    assert_eq!(world(&scene)[0][0], Vec3::new(3.0, 0.0, 0.0));
+}
+
 /// Right by the specification, though unusual.
 #[test]
 fn unusual_documents() {

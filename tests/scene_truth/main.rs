@@ -4,21 +4,13 @@
 //! there, so a box may be off by some units in the last place of its largest coordinate, and an area, a sum of rounded
 //! products, by a few 10⁻⁶ of itself. Counts are exact.
 
+#[path = "../support/scenes.rs"]
+mod support;
+
 use glam::DVec3;
-use std::path::PathBuf;
+use support::scenes;
 use voxgi::scene::listing::list;
 use voxgi::scene::{Scene, load};
-
-/// The folder of `VOXGI_SCENES`; without it the test is skipped, or fails if `VOXGI_REQUIRE_SCENES` is 1.
-fn scenes() -> Option<PathBuf> {
-    let folder = std::env::var_os("VOXGI_SCENES").map(PathBuf::from).filter(|folder| folder.is_dir());
-    if folder.is_none() {
-        let required = std::env::var("VOXGI_REQUIRE_SCENES").is_ok_and(|value| value == "1");
-        assert!(!required, "VOXGI_SCENES names no folder, and VOXGI_REQUIRE_SCENES=1 wants one");
-        eprintln!("skipped: VOXGI_SCENES names no folder of scenes");
-    }
-    folder
-}
 
 #[derive(Clone, Copy, Debug)]
 struct Truth {

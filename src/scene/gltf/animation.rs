@@ -13,9 +13,6 @@ use std::collections::BTreeMap;
 pub fn tracks(file: &File, notes: &mut Notes) -> BTreeMap<usize, Vec<Track>> {
     let mut all: BTreeMap<usize, Vec<Track>> = BTreeMap::new();
     for (index, animation) in file.root.animations.iter().enumerate() {
-        if animation.channels.is_empty() {
-            notes.lack("animation of something that is no node", "not played");
-        }
         let mut duration = 0.0_f64;
         let mut own: Vec<(usize, Track)> = Vec::new();
         for (i, channel) in animation.channels.iter().enumerate() {

@@ -48,9 +48,10 @@ fn word(content: &[u8], at: usize) -> Option<u32> {
 /// Longest text that is tidied, in bytes: as values of any type, a text takes many times its size.
 const MOST_TIDIED: usize = 8 << 20;
 
-/// The document in a JSON text, or what is wrong, with the JSON pointer of where.
-pub fn parse(json: &[u8]) -> Result<Root, String> {
-    from_slice(json).or_else(|error| {
+/// The document in a JSON text, and how many channels of animations had to be left out since they move no node; or what
+/// is wrong, with the JSON pointer of where.
+pub fn parse(json: &[u8]) -> Result<(Root, usize), String> {
+    from_slice(json).map(|root| (root, 0)).or_else(|error| {
         let tidied = if json.len() <= MOST_TIDIED { parse_tidied(json) } else { None };
         tidied.ok_or_else(|| match place(json) {
             Some(pointer) => format!("at {pointer}: {error}"),
@@ -74,18 +75,21 @@ fn place(json: &[u8]) -> Option<String> {
 
 /// Some documents are right, but not for the JSON types: whole numbers written as floats, scenes without nodes,
 /// animations of what is no node.
-fn parse_tidied(json: &[u8]) -> Option<Root> {
+fn parse_tidied(json: &[u8]) -> Option<(Root, usize)> {
     let mut document: Value = from_slice(json).ok()?;
     make_integers(&mut document);
+    let mut left_out = 0;
     for scene in document.get_mut("scenes").and_then(Value::as_array_mut).into_iter().flatten() {
         scene.as_object_mut()?.entry("nodes").or_insert_with(|| Value::Array(Vec::new()));
     }
     for animation in document.get_mut("animations").and_then(Value::as_array_mut).into_iter().flatten() {
         if let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) {
+            let before = channels.len();
             channels.retain(|channel| channel.pointer("/target/node").is_some_and(Value::is_u64));
+            left_out += before - channels.len();
         }
     }
-    from_slice(&serde_json::to_vec(&document).ok()?).ok()
+    Some((from_slice(&serde_json::to_vec(&document).ok()?).ok()?, left_out))
 }
 
 fn make_integers(value: &mut Value) {

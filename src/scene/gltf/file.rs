@@ -43,7 +43,10 @@ impl File {
             .map_err(|error| no_document(error.to_string()))?
             .saturating_add(content.len() as u64);
         budget.hold(taken).map_err(|fault| fault.at(&name.to_string(), "the whole document"))?;
-        let root = parse(json).map_err(no_document)?;
+        let (root, left_out) = parse(json).map_err(no_document)?;
+        for _ in 0..left_out {
+            notes.lack("animation of something that is no node", "not played");
+        }
         if !root.asset.version.starts_with("2.") {
             let version = brief(&root.asset.version);
             let message = format!("`{name}` is glTF {version:?}; only 2.x is understood");

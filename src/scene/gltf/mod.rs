@@ -29,14 +29,15 @@ mod texture;
 pub(super) mod uri;
 mod vertices;
 
-use super::layout::{Instance, Triangle};
+use super::layout::{Instance, Triangle, UNLIT};
 use super::motion::{self, Carried};
 use super::{Lack, Scene};
 use crate::problem::{Problem, Problems, Result};
 use file::File;
 pub(super) use file::read;
 use gltf::json::Root;
-use gltf::json::mesh::{Mesh, Primitive};
+use gltf::json::mesh::{Mesh, Primitive, Semantic};
+use gltf::json::validation::Checked;
 use lookup::Needs;
 use mesh::Meshes;
 use nodes::{Movers, Placed};
@@ -216,6 +217,11 @@ impl<'a> Builder<'a> {
         }
         if primitive.targets.as_ref().is_some_and(|targets| !targets.is_empty()) {
             self.notes.lack("morphed primitive", "drawn at rest");
+        }
+        let colors = primitive.attributes.contains_key(&Checked::Valid(Semantic::Colors(0)));
+        let unlit = self.scene.materials.get(material).is_some_and(|m| m.flags & UNLIT != 0);
+        if colors && unlit {
+            self.notes.lack("set of vertex colours of an unlit surface", "left out");
         }
         self.used[material] = true;
         if material == self.scene.materials.len() {

@@ -70,7 +70,7 @@ pub fn placed<'a>(root: &'a Root, mut movers: Movers<'_>, notes: &mut Notes) -> 
         let node = &root.nodes[index];
         let local = notes.catch(format_args!("/nodes/{index}"), local(node)).unwrap_or(DMat4::IDENTITY);
         let to_world = above.to_world * local;
-        let moving = movers.of(index, node, local, above).map(|node| {
+        let moving = movers.of(index, node, local, above, notes).map(|node| {
             moves.nodes.push(node);
             moves.nodes.len() - 1
         });
@@ -94,8 +94,19 @@ struct Above {
 
 impl Movers<'_> {
     /// The node as one that moves, if it or its parent does.
-    fn of(&mut self, index: usize, node: &json::Node, local: DMat4, above: Above) -> Option<MovingNode> {
-        let tracks = self.tracks.remove(&index).unwrap_or_default();
+    fn of(
+        &mut self,
+        index: usize,
+        node: &json::Node,
+        local: DMat4,
+        above: Above,
+        notes: &mut Notes,
+    ) -> Option<MovingNode> {
+        let mut tracks = self.tracks.remove(&index).unwrap_or_default();
+        if node.matrix.is_some() && !tracks.is_empty() {
+            notes.lack("animation of a node that has a matrix", "not played");
+            tracks.clear();
+        }
         let request = self.added.iter().find(|request| Some(&request.node) == node.name.as_ref());
         if tracks.is_empty() && request.is_none() && above.moving.is_none() {
             return None;
