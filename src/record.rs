@@ -39,6 +39,9 @@ pub struct Record {
     /// Fills before stages, median of their sum; `null` if the adapter can't time them.
     pub fills_ms: Option<f64>,
     pub stages: Vec<StageRecord>,
+    /// What not simulating an effect that the scene has nothing of saves, if that was measured.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effects: Option<Vec<EffectRecord>>,
     pub counters: BTreeMap<String, u32>,
     pub memory: MemoryRecord,
     /// What the scene calls for and is not done.
@@ -92,6 +95,19 @@ pub struct StageRecord {
     pub profile: Option<StageProfile>,
 }
 
+/// An effect that the scene has nothing of, simulated all the same: kernels with it compiled in, and the stages that
+/// it needs.
+#[derive(Clone, Debug, Serialize)]
+pub struct EffectRecord {
+    /// The flag that says whether a scene has it.
+    pub feature: &'static str,
+    /// What the stages below take longer with it, in sum: median over frames with and without, run in turns.
+    pub saved_ms: Option<f64>,
+    pub spread: Spread,
+    /// Stages that run only with it, or another program with it, and what each then takes longer.
+    pub stages: BTreeMap<String, Option<f64>>,
+}
+
 /// What only a profile says of a stage that is in the schedule.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StageProfile {
@@ -130,7 +146,7 @@ pub fn quantile(samples: &[f64], q: f64) -> Option<f64> {
     Some(sorted[low] + (sorted[high] - sorted[low]) * (at - low as f64))
 }
 
-fn spread(samples: &[f64]) -> Spread {
+pub fn spread(samples: &[f64]) -> Spread {
     Spread { p10: quantile(samples, 0.1), p90: quantile(samples, 0.9) }
 }
 

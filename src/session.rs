@@ -34,6 +34,8 @@ pub struct Request {
     pub varying: BTreeSet<u32>,
     /// Bytes that the pipeline's resources may take.
     pub memory: Option<u64>,
+    /// Features that conditions are told instead of the scene's own, to see what it would take to simulate them.
+    pub claims: Vec<(&'static str, features::Feature)>,
 }
 
 impl Default for Request {
@@ -49,6 +51,7 @@ impl Default for Request {
             keep: false,
             varying: graph::work::all_causes(),
             memory: None,
+            claims: Vec::new(),
         }
     }
 }
@@ -196,7 +199,8 @@ fn elements(scene: &Scene) -> plan::Elements {
 fn facts(request: &Request, scene: Option<&Scene>) -> BTreeMap<String, Value> {
     let mut facts: BTreeMap<String, Value> =
         features::NAMES.iter().map(|f| (f.name.to_owned(), Value::Unknown)).collect();
-    for (name, feature) in scene.map(features::features).unwrap_or_default() {
+    let features = scene.map(features::features).unwrap_or_default();
+    for (name, feature) in features.into_iter().chain(request.claims.iter().copied()) {
         let value = match feature {
             features::Feature::Number(n) => Value::Number(n),
             features::Feature::Flag(f) => Value::Flag(f),

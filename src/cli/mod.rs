@@ -158,6 +158,7 @@ impl PipelineArgs {
                 crate::graph::work::all_causes()
             },
             memory: self.memory,
+            claims: Vec::new(),
         }
     }
 }

@@ -41,7 +41,8 @@ pub struct RenderArgs {
     /// Look for the first stage that writes NaN or infinities.
     #[arg(long)]
     scan: bool,
-    /// Measure what each stage that was kept or dropped takes when it runs.
+    /// Measure what each stage that was kept or dropped takes when it runs, and what it would take to simulate each
+    /// effect that the scene has nothing of.
     #[arg(long)]
     savings: bool,
     /// Print the record as one JSON object.
@@ -83,7 +84,8 @@ pub fn run(args: &RenderArgs) -> Result<()> {
     record.outputs = outputs;
     record.scan = scan;
     if args.savings {
-        savings::measure(&mut record.stages, &args.run, &started)?;
+        savings::stages(&mut record.stages, &args.run, &started)?;
+        record.effects = Some(savings::effects(&args.run, &started)?);
     }
     if let Some(folder) = &args.out {
         let path = folder.join("record.json");
@@ -178,6 +180,16 @@ fn table(record: &Record) -> String {
         ms(record.first_use_ms)
     ));
     line(format_args!("{:<widest$}  {:>9}\n", "encode (CPU)", ms(record.encode_ms)));
+    for effect in record.effects.iter().flatten() {
+        let spread = format!("{} to {}", ms(effect.spread.p10), ms(effect.spread.p90));
+        let stages: Vec<&str> = effect.stages.keys().map(String::as_str).collect();
+        line(format_args!(
+            "without {}: saves {} ({spread}), in {}",
+            effect.feature,
+            ms(effect.saved_ms),
+            stages.join(", ")
+        ));
+    }
     for (counter, count) in &record.counters {
         line(format_args!("{counter:<widest$}  {count:>9}"));
     }

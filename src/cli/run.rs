@@ -133,6 +133,7 @@ impl Started {
             encode_ms: samples.median(|t| Some(t.encode)),
             fills_ms: samples.median(|t| record::fills(frame, t)),
             stages: record::stages(frame, samples),
+            effects: None,
             counters: frame.counters(&self.gpu)?.into_iter().collect(),
             memory: record::memory(frame),
             lacks: record::lacks(scene, &frame.graph),

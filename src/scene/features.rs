@@ -107,6 +107,38 @@ features! { scene, used;
     "cameras.total" Number "Number of cameras." = scene.cameras.len() as f64;
 }
 
+/// What a scene can have an effect of, and what conditions are told of one that has it: the features that differ from
+/// those of a scene without.
+const EFFECTS: &[(&str, &[(&str, Feature)])] = &[
+    ("scene.emissive", &[("scene.max_emission", Feature::Number(1.0))]),
+    ("scene.textured", &[]),
+    ("scene.roughness_textured", &[]),
+    ("scene.normal_mapped", &[("scene.vertex_extras", Feature::Flag(true))]),
+    ("scene.second_uv", &[("scene.vertex_extras", Feature::Flag(true))]),
+    ("scene.vertex_colors", &[("scene.vertex_extras", Feature::Flag(true))]),
+    ("scene.masked", &[]),
+    ("scene.moving", &[]),
+    (
+        "scene.environment",
+        &[
+            ("scene.environment_width", Feature::Number(1.0)),
+            ("scene.environment_height", Feature::Number(1.0)),
+            ("scene.environment_levels", Feature::Number(1.0)),
+        ],
+    ),
+];
+
+/// For each effect that `scene` has nothing of, its flag's name and the features of a scene that has some.
+pub fn missing_effects(scene: &Scene) -> Vec<(&'static str, Vec<(&'static str, Feature)>)> {
+    let features = features(scene);
+    let missing = EFFECTS.iter().filter(|(name, _)| features.contains(&(*name, Feature::Flag(false))));
+    missing
+        .map(|(name, others)| {
+            (*name, [(*name, Feature::Flag(true))].iter().chain(*others).copied().collect())
+        })
+        .collect()
+}
+
 fn environment(scene: &Scene, of: impl Fn(&Environment) -> f64) -> f64 {
     scene.environment.as_ref().map_or(0.0, of)
 }

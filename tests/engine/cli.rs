@@ -268,3 +268,28 @@ fn kernels_and_devices_list_all_there_are() {
     let adapters = devices["devices"].as_array().expect("adapters");
     assert!(!adapters.is_empty() && adapters.iter().all(|adapter| adapter["adapter"]["name"].is_string()));
 }
+
+/// What each missing effect would take, and in which stages: those that only it needs, and those that it changes.
+#[test]
+fn savings_name_the_effects_that_a_scene_lacks() {
+    let scene = root("scenes/cornell-point.glb").display().to_string();
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("color.png");
+    let output = format!("color={}", file.display());
+    let arguments = ["render", &scene, "-p", "cones", "--size", "24x24", "--set", "resolution=16"];
+    let record = json(&voxgi(&[&arguments[..], &["--savings", "--json", "--output", &output]].concat()));
+    let effects = record["effects"].as_array().expect("effects");
+    let effect = |name: &str| effects.iter().find(|effect| effect["feature"] == name);
+    let emissive = effect("scene.emissive").expect("no light comes from surfaces");
+    for stage in ["storage/emitted", "voxelize/still", "trace/cones"] {
+        assert!(emissive["stages"][stage].is_number(), "{stage}: {emissive}");
+    }
+    assert!(emissive["stages"].get("light_maps/light_depth[0]").is_none(), "light maps show no emission");
+    assert!(emissive["saved_ms"].is_number() && emissive["spread"]["p90"].is_number(), "{emissive}");
+    let masked = effect("scene.masked").expect("no holes");
+    assert!(masked["stages"]["light_maps/light_depth[0]"].is_number(), "{masked}");
+    assert!(effect("scene.double_sided").is_none(), "no kernel asks for it");
+    let arguments = ["render", &scene, "-p", "cones", "--size", "24x24", "--set", "resolution=16"];
+    let record = json(&voxgi(&[&arguments[..], &["--json", "--output", &output]].concat()));
+    assert!(record.get("effects").is_none(), "nothing was asked for");
+}
