@@ -7,7 +7,7 @@ use crate::frame::{Clock, Frame, Times};
 use crate::graph::{Graph, facts};
 use crate::scene::Scene;
 use crate::schedule::{Fate, Step};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Changes whenever a field changes its name, its place or its meaning.
@@ -53,7 +53,7 @@ pub struct Record {
     pub scan: Option<Vec<crate::frame::Finding>>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Adapter {
     pub name: String,
     pub driver: String,
@@ -122,7 +122,7 @@ pub struct StageProfile {
 }
 
 /// Tenth and ninetieth percentile.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Spread {
     pub p10: Option<f64>,
     pub p90: Option<f64>,
