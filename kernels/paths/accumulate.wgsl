@@ -5,11 +5,12 @@
 
 struct Knobs {
     batch: u32,
-    samples_per_frame: u32,
 }
 
 struct Values {
     bands: u32,
+    /// Samples of a pixel that a frame adds.
+    round_samples: u32,
     band_pixels: u32,
 }
 
@@ -64,9 +65,9 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let pixel = vec2u(number % size.x, number / size.x);
     let round = frame.index / values.bands;
-    let rounds = knobs.batch / knobs.samples_per_frame;
+    let rounds = knobs.batch / values.round_samples;
 
-    let share = 1.0 / f32(knobs.samples_per_frame);
+    let share = 1.0 / f32(values.round_samples);
     var seen = surfaces[number];
     seen.albedo += (textureLoad(sample_albedo, pixel, 0) * share - seen.albedo) / f32(round + 1u);
     seen.normal += (textureLoad(sample_normal, pixel, 0) * share - seen.normal) / f32(round + 1u);

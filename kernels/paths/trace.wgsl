@@ -15,7 +15,6 @@ import lib/reflection;
 
 struct Knobs {
     batch: u32,
-    samples_per_frame: u32,
     first_sample: u32,
     max_scatterings: u32,
     seed: u32,
@@ -25,6 +24,8 @@ struct Values {
     center: vec3f,
     ao_end: f32,
     bands: u32,
+    /// Samples of a pixel that a frame adds.
+    round_samples: u32,
     band_pixels: u32,
 }
 
@@ -96,8 +97,8 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let pixel = vec2u(number % size.x, number / size.x);
-    var index = knobs.first_sample + frame.index / values.bands * knobs.samples_per_frame;
-    let end = index + knobs.samples_per_frame;
+    var index = knobs.first_sample + frame.index / values.bands * values.round_samples;
+    let end = index + values.round_samples;
 
     var direct = vec3f(0.0);
     var indirect = vec3f(0.0);
@@ -243,7 +244,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     textureStore(sample_albedo, pixel, albedo);
     textureStore(sample_normal, pixel, normal);
     @if(count_rays) {
-        atomicAdd(&counters.paths, knobs.samples_per_frame);
+        atomicAdd(&counters.paths, values.round_samples);
         atomicAdd(&counters.rays, rays);
     }
 }

@@ -4,11 +4,12 @@
 
 struct Knobs {
     batch: u32,
-    samples_per_frame: u32,
 }
 
 struct Values {
     bands: u32,
+    /// Samples of a pixel that a frame adds.
+    round_samples: u32,
 }
 
 struct Counted {
@@ -37,7 +38,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let rounds = (frame.index + 1u) / values.bands;
-    let batches = f32(rounds * knobs.samples_per_frame / knobs.batch);
+    let batches = f32(rounds * values.round_samples / knobs.batch);
     let scale = select(0.0, 1.0 / (batches * (batches - 1.0)), batches > 1.0);
     let square = squares[id.y * size.x + id.x];
     textureStore(color_variance, id.xy, vec4f(square.color.rgb * scale, 1.0));
