@@ -1,8 +1,8 @@
 //! ꟻLIP: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild 2020, ꟻLIP: A Difference Evaluator for
 //! Alternating Images. What a person notices who sees the two pictures in turn.
 //!
-//! The authors' own code, for pictures of low dynamic range, with what their tool has as default: a display of 3840 pixels
-//! on 0.7 m, seen from 0.7 m (67.02 pixels per degree).
+//! The authors' own code, for pictures of low dynamic range, with what their tool has as default: a display of 3840
+//! pixels on 0.7 m, seen from 0.7 m (67.02 pixels per degree).
 
 use super::refuse;
 use crate::picture::Encoded;

@@ -11,20 +11,20 @@ const LIT: f64 = 0.01;
 /// Pixels by what the reference says of them; one value for each, row by row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Masks {
-    /// The background is out, and so are its edges: those that see a surface, as all their neighbours do. A pixel that is
-    /// part surface and part background says more of how edges are smoothed than of light.
+    /// The background is out, and so are its edges: those that see a surface, as all their neighbours do. A pixel
+    /// that is part surface and part background says more of how edges are smoothed than of light.
     pub surface: Vec<bool>,
-    /// Of `surface`, those that light reaches directly, or that give it off: whose direct radiance, the mean over channels, is
-    /// above 1 % of the median over all of `surface` that have any. (A median, since a small light in the picture
-    /// may be brighter than all that it lights.)
+    /// Of `surface`, those that light reaches directly, or that give it off: whose direct radiance, the mean over
+    /// channels, is above 1 % of the median over all of `surface` that have any. (A median, since a small light in
+    /// the picture may be brighter than all that it lights.)
     pub lit: Vec<bool>,
-    /// Of `surface`, the others: all their light is indirect.
+    /// Of `surface`, the others: next to all their light is indirect.
     pub unlit: Vec<bool>,
 }
 
 impl Masks {
-    /// From two outputs of a reference: `depth`, above 0 where any sample of a pixel meets a surface, and `direct`. Errors as
-    /// those of [`super::Measures::new`].
+    /// From two outputs of a reference: `depth`, above 0 where any sample of a pixel meets a surface, and `direct`.
+    /// Errors as those of [`super::Measures::new`].
     pub fn new(depth: &Input, direct: &Input) -> Result<Self> {
         check::same_size(depth, direct)?;
         check::finite(&[*depth, *direct])?;

@@ -2,8 +2,8 @@
 //!
 //! [`Measures::new`] holds one picture against one reference and refuses what can't be compared; [`Measures::errors`]
 //! gives the numbers, over all pixels or over those of a mask ([`Masks`]). t is the picture, r the reference; alpha is
-//! not measured; sums are in 64 bits; M is the mean of |r| over all pixels and channels of the reference, masked or not,
-//! so that the means of masks that share out the pixels add up to that of all.
+//! not measured; sums are in 64 bits. M is the mean of |r| over all pixels and channels of the reference, also under a
+//! mask, so that the means of masks that share out the pixels add up to that of all.
 //!
 //! | name | is | alike | left out |
 //! |---|---|---|---|
@@ -16,8 +16,8 @@
 //! | `ssim` | mean structural similarity, see [`ssim`]; −1 to 1 | 1 | no 11×11 window; [`Kind::Other`] |
 //! | `flip` | mean ꟻLIP, 0 to 1, see [`flip`] | 0 | [`Kind::Other`] |
 //!
-//! `ssim` and `flip` are of what a display shows ([`crate::picture::shown`], 8 bits, by [`Options`]), so that whoever has
-//! the PNG files of both pictures can compute them again.
+//! `ssim` and `flip` are of what a display shows ([`crate::picture::shown`], 8 bits, by [`Kind::display`]), so that
+//! whoever has the PNG files of both pictures can compute them again.
 
 mod check;
 pub mod flip;
@@ -105,8 +105,8 @@ pub struct Measures<'a> {
 }
 
 impl<'a> Measures<'a> {
-    /// Computes what needs a pixel's neighbours, once for all masks. Errors are inputs `measure-alike` (a picture against
-    /// itself), `measure-size`, `measure-variance`, `measure-exposure`, and failures `measure-finite`.
+    /// Computes what needs a pixel's neighbours, once for all masks. Errors are inputs `measure-alike` (a picture
+    /// against itself), `measure-size`, `measure-variance`, `measure-exposure`, and failures `measure-finite`.
     pub fn new(kind: Kind, test: Input<'a>, truth: Truth<'a>, options: &Options) -> Result<Self> {
         check::pair(&test, &truth)?;
         check::variance(&truth)?;
@@ -121,8 +121,8 @@ impl<'a> Measures<'a> {
         Ok(measures)
     }
 
-    /// By name; the mask has a value for each pixel. Errors are inputs `measure-mask`: one of another size, or without a
-    /// pixel.
+    /// By name; the mask has a value for each pixel. Errors are inputs `measure-mask`: one of another size, or
+    /// without a pixel.
     pub fn errors(&self, mask: Option<&[bool]>) -> Result<BTreeMap<&'static str, f64>> {
         check::mask(mask, self.truth.picture)?;
         let (test, truth) = (self.test.picture, self.truth.picture);

@@ -111,7 +111,7 @@ fn small_pictures() {
     assert!(errors(&a, &b)["flip"] > 0.0);
 }
 
-/// References of one truth with noise of a known variance: a perfect picture has just that noise, one that is 30 % off more.
+/// A reference with noise of a known variance: a perfect picture has just that much error, one that is 30 % off more.
 #[test]
 fn noise_is_what_a_perfect_picture_has() {
     let [truth, ..] = pictures(3);
