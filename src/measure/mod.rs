@@ -5,7 +5,7 @@
 //! not measured; sums are in 64 bits. M is the mean of |r| over all pixels and channels of the reference, also under a
 //! mask, so that the means of masks that share out the pixels add up to that of all.
 //!
-//! | name | is | alike | left out |
+//! | name | is | if alike | left out |
 //! |---|---|---|---|
 //! | `rmse` | √ mean (t−r)², in the unit of the pictures | 0 | – |
 //! | `relmse` | mean (t−r)² / (r² + 0.01 M²) over pixels and channels | 0 | r black everywhere |
@@ -13,18 +13,18 @@
 //! | `relmse_above_noise` | `relmse` less the reference's own [`noise`], at least 0 | 0 | variance not known |
 //! | `smape` | mean 2\|t−r\| / (\|t\|+\|r\|), 0/0 as 0; 0 to 2 | 0 | – |
 //! | `bias` | mean t / mean r: the ratio of means | 1 | mean r not above 0; [`Kind::Other`] |
-//! | `ssim` | mean structural similarity, see [`ssim`]; −1 to 1 | 1 | no 11×11 window; [`Kind::Other`] |
-//! | `flip` | mean ꟻLIP, 0 to 1, see [`flip`] | 0 | [`Kind::Other`] |
+//! | `ssim` | mean structural similarity (Wang et al. 2004: 11×11, σ = 1.5); −1 to 1 | 1 | no such window; [`Kind::Other`] |
+//! | `flip` | mean ꟻLIP (Andersson et al. 2020: LDR, 67.02 pixels per degree); 0 to 1 | 0 | [`Kind::Other`] |
 //!
 //! `ssim` and `flip` are of what a display shows ([`crate::picture::shown`], 8 bits, by [`Kind::display`]), so that
 //! whoever has the PNG files of both pictures can compute them again.
 
 mod check;
-pub mod flip;
+mod flip;
 mod maps;
 mod masks;
 mod pixels;
-pub mod ssim;
+mod ssim;
 #[cfg(test)]
 mod tests;
 

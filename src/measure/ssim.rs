@@ -20,7 +20,7 @@ const C2: f64 = 0.03 * 0.03;
 type Moments = [f64; 5];
 
 /// The similarity at the centre of each window.
-pub struct Map {
+pub(super) struct Map {
     /// Of the picture.
     width: usize,
     /// `width − 10` in a row.
