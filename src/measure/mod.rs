@@ -13,7 +13,7 @@
 //! | `relmse_above_noise` | `relmse` less the reference's own [`noise`], at least 0 | 0 | variance not known |
 //! | `smape` | mean 2\|t−r\| / (\|t\|+\|r\|), 0/0 as 0; 0 to 2 | 0 | – |
 //! | `bias` | mean t / mean r: the ratio of means | 1 | mean r not above 0; [`Kind::Other`] |
-//! | `ssim` | mean structural similarity (Wang et al. 2004: 11×11, σ = 1.5); −1 to 1 | 1 | no such window; [`Kind::Other`] |
+//! | `ssim` | mean SSIM (Wang et al. 2004: 11×11, σ = 1.5); −1 to 1 | 1 | no such window; [`Kind::Other`] |
 //! | `flip` | mean ꟻLIP (Andersson et al. 2020: LDR, 67.02 pixels per degree); 0 to 1 | 0 | [`Kind::Other`] |
 //!
 //! `ssim` and `flip` are of what a display shows ([`crate::picture::shown`], 8 bits, by [`Kind::display`]), so that
