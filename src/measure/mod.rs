@@ -10,7 +10,7 @@
 //! | `rmse` | √ mean (t−r)², in the unit of the pictures | 0 | – |
 //! | `relmse` | mean (t−r)² / (r² + 0.01 M²) over pixels and channels | 0 | r black everywhere |
 //! | `relmse_trimmed` | the same without the 0.1 % of pixels (rounded down) where it is largest | 0 | as `relmse` |
-//! | `relmse_above_noise` | `relmse` less the reference's own [`noise`], at least 0 | 0 | variance not known |
+//! | `relmse_above_noise` | `relmse` less the reference's own [`noise`], at least 0 | 0 | noise not known |
 //! | `smape` | mean 2\|t−r\| / (\|t\|+\|r\|), 0/0 as 0; 0 to 2 | 0 | – |
 //! | `bias` | mean t / mean r: the ratio of means | 1 | mean r not above 0; [`Kind::Other`] |
 //! | `ssim` | mean SSIM (Wang et al. 2004: 11×11, σ = 1.5); −1 to 1 | 1 | no such window; [`Kind::Other`] |
@@ -168,7 +168,8 @@ impl<'a> Measures<'a> {
 }
 
 /// What the reference's own variance amounts to as relMSE: what a perfect picture is expected to have. Mean of
-/// variance / (r² + 0.01 M²). `None` without variance, and where the reference is black everywhere.
+/// variance / (r² + 0.01 M²). `None` where it is not known: without variance, with one that is 0 in every pixel (a
+/// single sample differs from no other), and where the reference is black everywhere.
 ///
 /// Errors as those of [`Measures::new`] and [`Measures::errors`].
 pub fn noise(truth: &Truth, mask: Option<&[bool]>) -> Result<Option<f64>> {

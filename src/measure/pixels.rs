@@ -69,9 +69,12 @@ pub(super) fn relative_squares(test: &Picture, truth: &Picture, mask: Option<&[b
     Some(pairs(test, truth, mask).map(pixel).collect())
 }
 
-/// Mean v / (r² + 0.01 M²).
+/// Mean v / (r² + 0.01 M²), unless no pixel has a variance.
 pub(super) fn relative_variance(truth: &Picture, variance: &Picture, mask: Option<&[bool]>) -> Option<f64> {
     let floor = floor(truth)?;
+    if mean_size(variance) == 0.0 {
+        return None;
+    }
     Some(mean(pairs(variance, truth, mask).flatten().map(|(v, r)| v / (r * r + floor))))
 }
 

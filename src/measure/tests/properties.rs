@@ -136,6 +136,25 @@ fn noise_is_what_a_perfect_picture_has() {
     assert!(within_noise(0.0, 0.0) && !within_noise(1e-9, 0.0));
 }
 
+/// No spread is no knowledge: a single sample differs from no other. Alpha of a variance is none.
+#[test]
+fn noise_of_a_single_sample_is_not_known() {
+    let [truth, test, variance] = pictures(3);
+    let zero = picture(4, truth.texels().flat_map(|_| [0.0, 0.0, 0.0, 1.0]).collect());
+    let one = picture(4, (0..4 * 1536).map(|i| if i == 1000 { 1e-3 } else { 0.0 }).collect());
+    let of = |variance| Truth { name: "truth", picture: &truth, variance };
+    for (variance, known) in [(&zero, false), (&one, true), (&variance, true)] {
+        assert_eq!(noise(&of(Some(variance)), None).unwrap().is_some(), known);
+        let test = Input { name: "test", picture: &test };
+        let measures = Measures::new(Kind::Light, test, of(Some(variance)), &Options::default()).unwrap();
+        assert_eq!(measures.errors(None).unwrap().contains_key("relmse_above_noise"), known);
+    }
+    assert_eq!(noise(&of(None), None).unwrap(), None);
+    // Under a mask where nothing varies it is known, and 0.
+    let mask: Vec<bool> = (0..1536).map(|i| i < 7).collect();
+    assert_eq!(noise(&of(Some(&one)), Some(&mask)).unwrap(), Some(0.0));
+}
+
 fn sorted(errors: &BTreeMap<&str, f64>) -> Vec<f64> {
     PERFECT.iter().map(|(name, _)| errors[name]).collect()
 }
