@@ -1,10 +1,10 @@
 #!/bin/sh
 # Makes a machine ready to build and run voxgi: scripts/setup.sh [--lints]
 #
-# Looks at what is there first: with a Rust that is new enough, a linker and a good Vulkan device, nothing is installed,
-# nothing is asked of the network, and no root is needed. A missing linker or device is installed where the machine
-# has apt and this is root, or may become it by sudo without a password; without that, it carries on with the
-# device that is there and says what that costs. --lints asks for rustfmt and clippy too.
+# Looks at what is there first: with a Rust that is new enough, C and C++ compilers and a good Vulkan device, nothing is
+# installed, nothing is asked of the network, and no root is needed. Missing compilers or a missing device are installed
+# where the machine has apt and this is root, or may become it by sudo without a password; without that, it carries on
+# with the device that is there and says what that costs. --lints asks for rustfmt and clippy too.
 #
 # Exit codes: 0 ready, 1 voxgi can't be built here (the message says what is missing and how to get it).
 set -eu
@@ -33,9 +33,9 @@ if [ "${1:-}" = --lints ] && ! { cargo fmt --version && cargo clippy --version; 
     rustup component add rustfmt clippy || stop "rustfmt and clippy could not be added by rustup"
 fi
 
-# --- A linker ---
-command -v cc >/dev/null 2>&1 || sh scripts/install.sh gcc libc6-dev ||
-    stop "there is no C linker, and Rust needs one: install gcc and libc6-dev, then run this again"
+# --- Compilers: Rust links by the one for C, and a measure of error is the C++ of those who defined it ---
+{ command -v cc && command -v c++; } >/dev/null 2>&1 || sh scripts/install.sh g++ libc6-dev ||
+    stop "there is no C or no C++ compiler (cc, c++): install g++ and libc6-dev, then run this again"
 
 # --- A device ---
 good() {

@@ -14,6 +14,7 @@ pub mod frame;
 pub mod graph;
 pub mod kernel;
 pub mod library;
+pub mod measure;
 pub mod picture;
 pub mod plan;
 pub mod play;

@@ -1,8 +1,8 @@
 //! Pictures in memory and on disk.
 //!
 //! A [`Picture`] is linear: scene values, unbounded, in 32-bit floats. It is kept without loss as OpenEXR
-//! ([`write_exr`]), and shown as PNG ([`write_png`]) through an exposure, a tone [`Curve`] and the sRGB transfer function.
-//! An [`Encoded`] picture is already what a display shows, and is written as it is. Row 0 is on top.
+//! ([`write_exr`]), and shown ([`shown`]; as PNG, [`write_png`]) through an exposure, a tone [`Curve`] and the sRGB
+//! transfer function. An [`Encoded`] picture is already what a display shows, and is written as it is. Row 0 is on top.
 //!
 //! Every write goes to a temporary file in the target's folder that takes the target's name when it is whole, so a file is
 //! there whole or not at all. Errors are failures `picture-write` and `picture-read` with the path and the cause.
@@ -18,7 +18,7 @@ mod tests;
 pub use curve::Curve;
 pub use exr_file::{read_exr, write_exr};
 pub use file::write_bytes;
-pub use png_file::{SIGNAL, read_png, write_encoded, write_png};
+pub use png_file::{SIGNAL, read_png, shown, write_encoded, write_png};
 
 /// A linear picture of 1 to 4 channels: `data[(y * width + x) * channels + c]`.
 #[derive(Clone, Debug, PartialEq)]

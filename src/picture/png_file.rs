@@ -12,12 +12,12 @@ use std::path::Path;
 /// The colour of texels that are not finite: magenta, opaque.
 pub const SIGNAL: [u8; 4] = [255, 0, 255, 255];
 
-/// Shows a linear picture: each colour channel times 2^`exposure`, through the curve, sRGB-coded, rounded to nearest. One
-/// channel is grey, two are red and green, a fourth is alpha, which is clipped to 0..1 and not curved. Texels with a
-/// channel that is not finite have the colour [`SIGNAL`].
+/// What a display shows of a linear picture: each colour channel times 2^`exposure`, through the curve, sRGB-coded,
+/// rounded to nearest. One channel is grey, two are red and green, a fourth is alpha, which is clipped to 0..1 and not
+/// curved. Texels with a channel that is not finite have the colour [`SIGNAL`].
 ///
-/// Returns how many texels are not finite.
-pub fn write_png(path: &Path, picture: &Picture, curve: Curve, exposure: f32) -> Result<usize> {
+/// Returns also how many texels are not finite.
+pub fn shown(picture: &Picture, curve: Curve, exposure: f32) -> (Encoded, usize) {
     let scale = exposure.exp2();
     let color = |c: f32| srgb::encode8(curve.apply((c * scale).min(f32::MAX)));
     let mut signals = 0;
@@ -38,7 +38,13 @@ pub fn write_png(path: &Path, picture: &Picture, curve: Curve, exposure: f32) ->
             [] => SIGNAL,
         });
     }
-    write(path, picture.width, picture.height, &data)?;
+    (Encoded { width: picture.width, height: picture.height, data }, signals)
+}
+
+/// Writes what [`shown`] makes of a linear picture. Returns how many texels are not finite.
+pub fn write_png(path: &Path, picture: &Picture, curve: Curve, exposure: f32) -> Result<usize> {
+    let (picture, signals) = shown(picture, curve, exposure);
+    write_encoded(path, &picture)?;
     Ok(signals)
 }
 

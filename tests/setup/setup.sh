@@ -1,7 +1,7 @@
 # shellcheck shell=sh disable=SC2154 # read by run.sh, which sets what it uses
 # setup.sh as a whole, in a copy of the repository, on the machines that install.sh's tests make.
 
-# rust_machine NAME INSTALLED RELEASE BACKPORTS: with Rust, a linker, and a vulkaninfo that shows what apt installed.
+# rust_machine NAME INSTALLED RELEASE BACKPORTS: with Rust, compilers, and a vulkaninfo that shows what apt installed.
 rust_machine() {
     apt_machine "$@"
     repository=$world/repository
@@ -15,6 +15,7 @@ END
     echo "echo 'rustc 1.999.0 (abcdef012 2030-01-01)'" | stub "$bin/rustc"
     stub "$bin/cargo" </dev/null
     stub "$bin/cc" </dev/null
+    stub "$bin/c++" </dev/null
 }
 
 # setting_up NAME CODE LOG SAID: SAID is in the last line of its messages.
@@ -85,9 +86,11 @@ setting_up 'no rustfmt, and no rustup' 1 '' 'rustfmt or clippy is missing'
 echo "echo \"rustup \$*\" >>$world/log" | stub "$bin/rustup"
 setting_up 'no rustfmt' 0 'rustup component add rustfmt clippy' 'Vulkan device: software 25.0.7'
 
-rust_machine no-linker 25.0.7 25.0.7 ''
-rm "$bin/cc"
-setting_up 'no linker' 0 'update
-install: gcc libc6-dev' 'Vulkan device: software 25.0.7'
-: >"$world/offline"
-setting_up 'no linker and no network' 1 'update' 'there is no C linker'
+for compiler in cc c++; do
+    rust_machine "no-$compiler" 25.0.7 25.0.7 ''
+    rm "$bin/$compiler"
+    setting_up "no $compiler" 0 'update
+install: g++ libc6-dev' 'Vulkan device: software 25.0.7'
+    : >"$world/offline"
+    setting_up "no $compiler and no network" 1 'update' 'there is no C or no C++ compiler'
+done
