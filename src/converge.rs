@@ -5,6 +5,7 @@
 
 use crate::device::Gpu;
 use crate::frame::{Changes, Frame, Times};
+use crate::measure::{self, Truth};
 use crate::picture::Picture;
 use crate::plan::PlannedProgress;
 use crate::problem::{Problem, Result};
@@ -42,21 +43,15 @@ impl Estimate {
         })
     }
 
-    /// What the variance of an output amounts to as a relative squared error: mean over pixels and channels of
-    /// v / (m² + 0.01 M²), M the mean of the whole picture. `None` if it has no variance.
+    /// What the variance of an output amounts to as relMSE: [`measure::noise`].
     pub fn noise(&self, output: &str) -> Option<f64> {
-        let (_, mean, variance) = self.means().find(|(name, _, _)| *name == output)?;
-        let colors = mean.channels().min(3) as usize;
-        let values = |picture: &Picture| -> Vec<f64> {
-            picture.texels().flat_map(|texel| texel[..colors].iter().map(|x| f64::from(*x))).collect()
-        };
-        let (means, variances) = (values(mean), values(variance));
-        let count = means.len() as f64;
-        let whole = means.iter().sum::<f64>() / count;
-        let floor = 0.01 * whole * whole;
-        let relative =
-            means.iter().zip(&variances).map(|(m, v)| if *v == 0.0 { 0.0 } else { v / (m * m + floor) });
-        Some(relative.sum::<f64>() / count)
+        let (name, picture, variance) = self.means().find(|(name, _, _)| *name == output)?;
+        measure::noise(&Truth { name, picture, variance: Some(variance) }, None).ok().flatten()
+    }
+
+    /// The largest noise of all outputs that have one.
+    pub fn worst_noise(&self) -> f64 {
+        self.means().filter_map(|(name, _, _)| self.noise(name)).fold(0.0, f64::max)
     }
 
     /// Both together, as one of all their samples. `None` if they are not alike.
@@ -141,8 +136,7 @@ pub fn converge(
             })?,
         };
         if look {
-            let worst = all.means().filter_map(|(name, _, _)| all.noise(name)).fold(0.0, f64::max);
-            error = Some((samples, worst));
+            error = Some((samples, all.worst_noise()));
             // A quarter more samples changes the error enough to look again.
             next_look = batches + (batches / 4).max(1);
         }

@@ -5,6 +5,7 @@
 //! pictures). Everything up to the schedule is pure. [`session`] goes the whole way.
 
 pub mod cli;
+pub mod compare;
 pub mod comparison;
 pub mod converge;
 pub mod device;

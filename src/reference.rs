@@ -114,11 +114,10 @@ fn progress(prepared: &Prepared) -> Result<PlannedProgress> {
 }
 
 fn is_enough(estimate: &Estimate, until: &Until) -> bool {
-    let worst = || estimate.means().filter_map(|(name, _, _)| estimate.noise(name)).fold(0.0, f64::max);
     let met = [
         until.samples.map(|samples| estimate.samples >= samples),
         until.time.map(|time| estimate.seconds >= time.as_secs_f64()),
-        until.error.map(|error| worst() <= error),
+        until.error.map(|error| estimate.worst_noise() <= error),
     ];
     met.into_iter().flatten().any(|met| met)
 }

@@ -4,6 +4,7 @@
 //! output, messages and progress to standard error.
 
 mod check;
+mod compare;
 mod devices;
 mod generate;
 mod kernels;
@@ -39,6 +40,8 @@ struct Cli {
 enum Command {
     /// Render a scene by a pipeline: pictures, and the time of each stage.
     Render(Box<render::RenderArgs>),
+    /// Compare pipelines: pictures, errors against the reference, time of each stage; a report.
+    Compare(Box<compare::CompareArgs>),
     /// Profile a pipeline: time, bytes and bandwidth of each stage over many frames; traces.
     Profile(Box<profile::ProfileArgs>),
     /// Check pipelines without rendering: problems, what would run, memory, the graph as a picture.
@@ -203,6 +206,7 @@ pub fn main() -> ExitCode {
     let cli = Cli::parse();
     let json = match &cli.command {
         Command::Render(args) => args.json,
+        Command::Compare(args) => args.json(),
         Command::Profile(args) => args.json,
         Command::Check(args) => args.json,
         Command::Kernels(args) => args.json,
@@ -212,6 +216,7 @@ pub fn main() -> ExitCode {
     };
     let result = match &cli.command {
         Command::Render(args) => render::run(args),
+        Command::Compare(args) => compare::run(args),
         Command::Profile(args) => profile::run(args),
         Command::Check(args) => check::run(args),
         Command::Kernels(args) => kernels::run(args),
