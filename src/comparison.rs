@@ -26,6 +26,10 @@ pub struct Comparison {
     pub adapter: Adapter,
     /// Of the output, in pixels.
     pub size: [u32; 2],
+    /// How PNGs are made from radiance, and what FLIP and SSIM look at: times 2^`exposure`, then the tone curve of this
+    /// name.
+    pub exposure: f32,
+    pub curve: String,
     pub scenes: Vec<SceneEntry>,
     pub runs: Vec<Run>,
 }
