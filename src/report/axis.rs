@@ -28,8 +28,8 @@ pub struct Axis {
 const MARGIN: f64 = 0.08;
 /// Least span of a logarithmic axis, in decades: points that differ by less than noise don't fill the chart.
 const LEAST_DECADES: f64 = 0.3;
-/// How many labels an axis aims at.
-const LABELS: f64 = 5.0;
+/// Most labels that an axis aims at.
+const LABELS: f64 = 7.0;
 
 impl Axis {
     /// Logarithmic over `values`, all above 0. With none, one decade.
@@ -77,6 +77,12 @@ impl Axis {
         axis.low = 0.0;
         axis.ticks.retain(|tick| *tick >= 0.0);
         axis
+    }
+
+    /// Labels at `values`, not at round numbers.
+    pub fn labelled(mut self, values: Vec<f64>) -> Self {
+        self.ticks = values;
+        self
     }
 
     pub fn names(title: impl Into<String>, names: Vec<String>) -> Self {

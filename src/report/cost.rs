@@ -4,7 +4,7 @@ use super::analysis::{Point, cheapest_within, front, points};
 use super::axis::Axis;
 use super::format::{milliseconds, number};
 use super::ink::Ink;
-use super::labels::place;
+use super::labels::{Wish, place};
 use super::measures::Measure;
 use super::plot::{At, Frame, Plot, plot, swatch};
 use super::view::{RunView, SceneView, View};
@@ -15,8 +15,10 @@ use std::collections::BTreeMap;
 
 /// The wide one, and one for phones: text keeps its size.
 const SIZES: [(&str, [u32; 2]); 2] = [("wide", [860, 470]), ("narrow", [343, 380])];
-/// Names beside points are cut to this many characters.
-const LONGEST: usize = 30;
+/// Names beside points are at most this many characters long; longer ones are in the list alone.
+const LONGEST: usize = 48;
+/// With more points than these, only those of the front have their names beside them.
+const FEW: usize = 10;
 /// Percent above the least error.
 const ENOUGH: [f64; 3] = [5.0, 25.0, 100.0];
 
@@ -168,7 +170,8 @@ impl<'a> Chart<'a> {
             let y = frame.at(1.0, *noise).1;
             plot.dashes((frame.left, y), (frame.right, y), Ink::Noise)?;
             let text = if self.noise.len() > 1 { format!("noise of {name}") } else { "reference's noise".to_owned() };
-            plot.text(&text, (frame.right - 4, y - 3), Ink::Muted, (HPos::Right, VPos::Bottom))?;
+            // Below the left end, where nothing is both fast and that right.
+            plot.text(&text, (frame.left + 6, y + 4), Ink::Muted, (HPos::Left, VPos::Top))?;
         }
         Ok(())
     }
@@ -198,19 +201,19 @@ impl<'a> Chart<'a> {
     }
 
     fn names(&self, plot: &Plot, frame: &Frame, wide: bool) -> Result<()> {
-        let mut at = Vec::new();
-        let mut texts = Vec::new();
+        let mut wishes = Vec::new();
         for point in &self.points {
             let Some(run) = self.scene.run(point.run) else { continue };
-            at.push(frame.at(point.time, point.error));
             let noise = if self.is_noise(run) { " ≤ noise" } else { "" };
             let short = format!("{}{noise}", run.number);
-            let full = (wide && run.run.name.chars().count() <= LONGEST).then(|| {
-                format!("{} {}{noise}", run.number, run.run.name)
-            });
-            texts.push(full.into_iter().chain([short]).collect());
+            let low = self.front.contains(point);
+            let named = low || self.points.len() <= FEW;
+            let fits = wide && named && run.run.name.chars().count() <= LONGEST;
+            let full = fits.then(|| format!("{} {}{noise}", run.number, run.run.name));
+            let texts = full.into_iter().chain([short]).collect();
+            wishes.push(Wish { at: frame.at(point.time, point.error), texts, low });
         }
-        for (text, at) in place(&at, &texts, [(frame.left, frame.top), (frame.right, frame.bottom)]) {
+        for (text, at) in place(&wishes, [(frame.left, frame.top), (frame.right, frame.bottom)]) {
             plot.text(&text, at, Ink::Text, (HPos::Left, VPos::Center))?;
         }
         Ok(())
@@ -231,16 +234,25 @@ impl<'a> Chart<'a> {
         (!missing.is_empty()).then(|| format!("Not in the chart: {}.", missing.join("; ")))
     }
 
+    /// The line for those who would not pay for the last bit of accuracy.
     fn cheapest(&self) -> Markup {
         let noise = self.noise.values().copied().fold(0.0, f64::max);
-        let found = ENOUGH.map(|percent| (percent, cheapest_within(&self.points, percent, noise)));
+        let mut found: Vec<(String, Point)> = Vec::new();
+        for percent in ENOUGH {
+            match (cheapest_within(&self.points, percent, noise), found.last_mut()) {
+                (Some(point), Some((percents, last))) if last.run == point.run => {
+                    *percents += &format!(", {percent}");
+                }
+                (Some(point), _) => found.push((percent.to_string(), point)),
+                (None, _) => {}
+            }
+        }
         html! {
             p {
-                "Cheapest "
-                @for (at, (percent, point)) in found.iter().enumerate() {
-                    @if at > 0 { "; " }
-                    "within " (percent) " % of the least error: "
-                    @if let Some((run, point)) = point.and_then(|p| Some((self.scene.run(p.run)?, p))) {
+                @for (at, (percents, point)) in found.iter().enumerate() {
+                    @if at == 0 { "The cheapest " } @else { "; " }
+                    "within " (percents) " % of the least error: "
+                    @if let Some(run) = self.scene.run(point.run) {
                         a href={ "#" (run.anchor()) } { (run.number) " " (run.run.name) }
                         " (" (milliseconds(Some(point.time))) ", " (number(point.error)) ")"
                     }

@@ -124,7 +124,7 @@ fn mean(values: &[u64], width: u32, corner: [u32; 2], size: [u32; 2]) -> f64 {
 
 /// The upper left corner of the window of `window` pixels with the largest sum of `values`; the first in reading order
 /// of several. By a table of sums over all rectangles from the origin.
-fn worst(values: &[u64], size: [u32; 2], window: [u32; 2]) -> [u32; 2] {
+pub(super) fn worst(values: &[u64], size: [u32; 2], window: [u32; 2]) -> [u32; 2] {
     let [width, height] = size.map(|side| side as usize);
     let [w, h] = window.map(|side| side as usize);
     let mut sums = vec![0; (width + 1) * (height + 1)];

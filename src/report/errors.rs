@@ -36,7 +36,7 @@ fn output(scene: &SceneView, output: &str) -> Markup {
                     th scope="col" { "run" }
                     th scope="col" class="n" { "GPU ms" }
                     @for measure in &measures { th scope="col" class="n" { (measure.title) } }
-                    th scope="col" { "against the reference's noise" }
+                    th scope="col" { "noise" }
                 } }
                 tbody {
                     @for run in &all {
@@ -48,7 +48,7 @@ fn output(scene: &SceneView, output: &str) -> Markup {
                                 @let values = all.iter().map(|run| error(run.run, output, measure.key));
                                 (cell(value, is_best(measure, value, values)))
                             }
-                            td { (verdict(run, output)) }
+                            td class="verdict" { (verdict(run, output)) }
                         }
                     }
                 }

@@ -8,7 +8,8 @@
 use plotters::style::RGBColor;
 use std::fmt::Write;
 
-/// Colours of series: Okabe and Ito's, which colour-blind people can tell apart, and grey for the rest of a stack.
+/// Colours of series: the hues of Okabe and Ito, which colour-blind people can tell apart, each dark or light enough to
+/// stand out from the paper (3:1 at least).
 pub const SERIES: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,11 +42,11 @@ const SERIES_COLORS: [[&str; 2]; SERIES] = [
     ["#0072B2", "#4C9FDB"],
     ["#D55E00", "#F0803C"],
     ["#009E73", "#2CC295"],
-    ["#CC79A7", "#E79CC6"],
-    ["#56B4E9", "#A5DBFA"],
-    ["#E69F00", "#F5B93D"],
+    ["#BC5F96", "#E79CC6"],
+    ["#3697CF", "#A5DBFA"],
+    ["#C58200", "#F5B93D"],
     ["#2B2F36", "#C4CAD2"],
-    ["#F0E442", "#F0E442"],
+    ["#756600", "#F0E442"],
 ];
 
 impl Ink {
@@ -58,7 +59,7 @@ impl Ink {
             Ink::Noise => ("noise".to_owned(), NOISE),
             Ink::Rest => ("rest".to_owned(), REST),
             Ink::Series(index) => (format!("series-{}", index % SERIES), SERIES_COLORS[index % SERIES]),
-            Ink::Upon(index) if matches!(index % SERIES, 0 | 6) => ("upon-deep".to_owned(), UPON_DEEP),
+            Ink::Upon(index) if matches!(index % SERIES, 0 | 6 | 7) => ("upon-deep".to_owned(), UPON_DEEP),
             Ink::Upon(_) => ("upon-pale".to_owned(), UPON_PALE),
         }
     }
@@ -101,5 +102,11 @@ pub fn css() -> String {
             );
         }
     }
+    // Names of points may cross lines: they stand upon a rim of paper.
+    let RGBColor(r, g, b) = Ink::Text.color();
+    let _infallible = writeln!(
+        css,
+        ".plot text[fill=\"#{r:02X}{g:02X}{b:02X}\"]{{paint-order:stroke;stroke:var(--surface);stroke-width:3px}}"
+    );
     css
 }

@@ -44,7 +44,7 @@ const POLICY: &str = "default-src 'none'; img-src data:; style-src 'unsafe-inlin
 /// `report-picture` (input) if a picture is missing, no PNG, of another size than the comparison, or outside of the
 /// folder; `report-chart` (failure) if a chart can't be drawn.
 pub fn html(comparison: &Comparison, folder: &Path) -> Result<String> {
-    let view = View::new(comparison, folder);
+    let view = View::new(comparison);
     let files = Files::new(comparison, folder);
     let mut scenes = Vec::new();
     for scene in &view.scenes {

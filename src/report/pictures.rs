@@ -60,13 +60,12 @@ fn run(view: &View, scene: &SceneView, run: &RunView, files: &Files) -> Result<M
             },
         });
     }
-    let noise = run.run.clock_reason.as_deref();
     Ok(html! {
         article class="run" id=(run.anchor()) data-scene=(scene.anchor()) tabindex="-1" {
             h4 { (run.number) " " (run.run.name) }
             p class="quiet" {
                 (milliseconds(run.run.gpu_ms.median)) " a frame by " (run.run.clock)
-                @if let Some(reason) = noise { " (" (reason) ")" }
+                @if let Some(reason) = &run.run.clock_reason { " (" (reason) ")" }
                 ", against reference " (run.run.reference)
             }
             @for figure in &figures { (figure) }
@@ -95,7 +94,7 @@ fn pictures(scene: &SceneView, run: &RunView, output: (usize, &str), files: &Fil
                     @if let Some(truth) = &truth {
                         div class={ "truth " (truth) } role="img" aria-label={ "Reference, " (output) } {}
                     }
-                    img class="own" src=(own) alt={ (output) " of " (name) };
+                    img class="own" draggable="false" src=(own) alt={ (output) " of " (name) };
                     @if truth.is_some() { span class="edge" aria-hidden="true" {} }
                 }
                 @if truth.is_some() {

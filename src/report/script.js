@@ -53,8 +53,12 @@ for (const slide of all(".slide")) {
     cut();
   };
   range.addEventListener("input", cut);
-  stack.addEventListener("pointerdown", (event) => { stack.setPointerCapture(event.pointerId); follow(event); });
-  stack.addEventListener("pointermove", (event) => { if (stack.hasPointerCapture(event.pointerId)) follow(event); });
+  const stop = () => removeEventListener("pointermove", follow);
+  stack.addEventListener("pointerdown", (event) => {
+    follow(event);
+    addEventListener("pointermove", follow);
+    for (const end of ["pointerup", "pointercancel"]) addEventListener(end, stop, { once: true });
+  });
   cut();
 }
 

@@ -14,6 +14,8 @@ use maud::{Markup, html};
 const SIZE: [u32; 2] = [400, 300];
 /// Values that span at least this factor are on a log axis.
 const WIDE: f64 = 4.0;
+/// So many values are labels of their axis; of more, round numbers are.
+const FEW: usize = 7;
 
 /// Error or time of a run.
 type Of<'a> = &'a dyn Fn(&Run) -> Option<f64>;
@@ -96,9 +98,12 @@ fn curves(runs: &[Run], lines: &[Line], name: &str, title: &str, of: Of) -> Resu
     let is_number = numbers.len() == values.len() && numbers.iter().all(|number| number.is_finite());
     let least = numbers.iter().copied().fold(f64::INFINITY, f64::min);
     let most = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let labelled = |axis: Axis| if numbers.len() <= FEW { axis.labelled(numbers.clone()) } else { axis };
     let x = match is_number {
-        true if least > 0.0 && most / least >= WIDE => Axis::log(format!("{name} (log)"), numbers),
-        true => Axis::linear(name, numbers),
+        true if least > 0.0 && most / least >= WIDE => {
+            labelled(Axis::log(format!("{name} (log)"), numbers.iter().copied()))
+        }
+        true => labelled(Axis::linear(name, numbers.iter().copied())),
         false => Axis::names(name, values.iter().map(|value| shortened(value)).collect()),
     };
     let place = |run: &Run| -> Option<f64> {

@@ -2,11 +2,9 @@
 
 use super::measures::{DEFAULT_MEASURE, DEFAULT_OUTPUT, MEASURES, Measure, outputs};
 use crate::comparison::{Comparison, Reference, Run, SceneEntry};
-use std::path::Path;
 
 pub struct View<'a> {
     pub comparison: &'a Comparison,
-    pub folder: &'a Path,
     pub outputs: Vec<String>,
     /// What the page shows before anything is chosen.
     pub output: String,
@@ -33,7 +31,7 @@ pub struct RunView<'a> {
 }
 
 impl<'a> View<'a> {
-    pub fn new(comparison: &'a Comparison, folder: &'a Path) -> Self {
+    pub fn new(comparison: &'a Comparison) -> Self {
         let mut pipelines: Vec<&str> = Vec::new();
         for run in &comparison.runs {
             if !pipelines.contains(&run.pipeline.as_str()) {
@@ -61,7 +59,6 @@ impl<'a> View<'a> {
         let default = MEASURES.iter().find(|measure| measure.key == DEFAULT_MEASURE && measured(measure));
         Self {
             comparison,
-            folder,
             output: if has_default { DEFAULT_OUTPUT.to_owned() } else { first },
             measure: default.or_else(|| MEASURES.iter().find(measured)).unwrap_or(&MEASURES[0]),
             outputs,
