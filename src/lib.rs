@@ -6,6 +6,7 @@
 
 pub mod cli;
 pub mod comparison;
+pub mod converge;
 pub mod device;
 pub mod document;
 pub mod expr;
@@ -19,6 +20,7 @@ pub mod play;
 pub mod problem;
 pub mod profile;
 pub mod record;
+pub mod reference;
 pub mod scene;
 pub mod schedule;
 pub mod session;

@@ -54,6 +54,7 @@ impl Play {
         let mut changed = BTreeSet::new();
         if moved.geometry {
             frame.update_scene(gpu, &self.scene, "instances");
+            frame.update_scene(gpu, &self.scene, "bvh");
             changed.insert(bit(Cause::Moving));
         }
         if moved.lights {
@@ -61,6 +62,9 @@ impl Play {
             frame.update_scene(gpu, &self.scene, "views");
             frame.facts().put_views(&self.scene.views);
             changed.insert(bit(Cause::Lights));
+        }
+        if moved.geometry || moved.lights {
+            frame.update_scene(gpu, &self.scene, "emitters");
         }
         if moved.cameras
             && let Some(camera) = self.through.and_then(|index| self.scene.cameras.get(index)).cloned()

@@ -2,6 +2,8 @@
 
 struct Camera {
     position: vec3f,
+    /// Metres along `forward`; nothing nearer is seen.
+    near: f32,
     forward: vec3f,
     /// Half the picture's width at distance 1, as `up` is half its height.
     right: vec3f,
@@ -21,7 +23,12 @@ struct Ray {
 
 /// The ray through the centre of a pixel.
 fn pixel_ray(pixel: vec2u, size: vec2u) -> Ray {
-    let at = (vec2f(pixel) + 0.5) / vec2f(size) * 2.0 - 1.0;
+    return picture_ray((vec2f(pixel) + 0.5) / vec2f(size));
+}
+
+/// The ray through a point of the picture: (0, 0) is its upper left corner, (1, 1) its lower right one.
+fn picture_ray(point: vec2f) -> Ray {
+    let at = 2.0 * point - 1.0;
     let aside = at.x * camera.right - at.y * camera.up;
     return Ray(camera.position + camera.parallel * aside, camera.forward + (1.0 - camera.parallel) * aside);
 }

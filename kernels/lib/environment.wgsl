@@ -7,12 +7,14 @@ struct EnvironmentFacts {
     environment_width: u32,
     environment_height: u32,
     environment_levels: u32,
+    /// Where the elements of the rows begin; see `lib/environment_choice`.
+    environment_rows: u32,
     /// Radians.
     environment_turn: f32,
 }
 
 var<uniform> scene: EnvironmentFacts;
-/// The levels one after another.
+/// The levels one after another, then an element for each row.
 var<storage, read> environment: array<vec4f>;
 
 fn environment_level(at: vec2f, level: u32) -> vec3f {

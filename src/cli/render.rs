@@ -1,10 +1,12 @@
 //! `voxgi render`: pictures, and the time of each stage.
 
 use super::outputs::{Target, Writer};
-use super::run::{RunArgs, Started, heading, progress, to_json};
+use super::run::{RunArgs, Started, UntilArgs, heading, progress, show, steps, to_json};
 use super::{print, print_json, savings};
+use crate::converge::{Estimate, Step, Until, converge};
 use crate::frame::Poison;
 use crate::picture::{self, Curve};
+use crate::plan::PlannedProgress;
 use crate::problem::{Problem, Result};
 use crate::record::{Record, Samples};
 use crate::session::bytes;
@@ -16,6 +18,8 @@ use std::path::PathBuf;
 pub struct RenderArgs {
     #[command(flatten)]
     run: RunArgs,
+    #[command(flatten)]
+    until: UntilArgs,
     /// Write an output to a file (.png or .exr); may be repeated. Default: `display`, or else `color`.
     #[arg(long = "output", value_name = "NAME[=FILE]")]
     outputs: Vec<String>,
@@ -50,6 +54,9 @@ pub struct RenderArgs {
     pub json: bool,
 }
 
+/// Batches of samples where nothing is said.
+const DEFAULT_BATCHES: u64 = 4;
+
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum PoisonArg {
     Ones,
@@ -70,7 +77,15 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         PoisonArg::Pattern => Poison::Pattern,
     });
     let mut started = args.run.start(ready, poison)?;
-    let samples = sample(&mut started, args.frames)?;
+    let samples = match started.frame.graph.plan.progress.clone() {
+        Some(progress) if args.frames.is_none() => converged(&mut started, &progress, &args.until)?,
+        None if args.until.given() => {
+            let message = format!("`{}` does not get better from frame to frame", args.run.pipeline);
+            let help = "leave `--samples`, `--seconds` and `--error` away; `--frames` says how often it runs";
+            return Err(Problem::input("no-progress", message).help(help).into());
+        }
+        _ => sample(&mut started, args.frames)?,
+    };
     let Started { gpu, frame, .. } = &mut started;
     let scan = if args.scan { Some(frame.scan(gpu)?) } else { None };
     if let Some(folder) = &args.out {
@@ -108,6 +123,20 @@ pub fn run(args: &RenderArgs) -> Result<()> {
         .help(format!("the first is texel or element {}", first.first))
         .into()),
     }
+}
+
+/// Batches of a pipeline that gets better from frame to frame, until it is as good as asked for.
+fn converged(started: &mut Started, progress: &PlannedProgress, until: &UntilArgs) -> Result<Samples> {
+    let bar = steps("rendering");
+    let until = until.until(Until { samples: Some(DEFAULT_BATCHES * progress.batch), ..Until::default() });
+    let mut watch = |step: Step, _: Option<&Estimate>| {
+        show(&bar, &step);
+        Ok(())
+    };
+    let (_, times) = converge(&started.gpu, &mut started.frame, progress, None, &until, &mut watch)?;
+    bar.finish_and_clear();
+    let (first, frames) = (times.first().cloned(), times.get(1..).unwrap_or_default().to_vec());
+    Ok(Samples { first, frames })
 }
 
 /// The first frame apart, then, from the same state, the frames that count, which the scene's motion goes on with; or

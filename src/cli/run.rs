@@ -1,6 +1,7 @@
 //! What the commands that run a pipeline on a scene have in common: their options, and the way to a realised frame.
 
 use super::{PipelineArgs, tell};
+use crate::converge::{Step, Until};
 use crate::device::{Gpu, LimitSet};
 use crate::frame::{Changes, Clock, Frame, Poison, calibrate};
 use crate::play::Play;
@@ -12,6 +13,7 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
+use std::time::Duration;
 
 #[derive(Args)]
 pub struct RunArgs {
@@ -31,6 +33,50 @@ pub struct RunArgs {
     /// Time stages by the wall clock, each submitted alone.
     #[arg(long)]
     wall_clock: bool,
+}
+
+/// How good the outputs of a pipeline are to be that get better from frame to frame.
+#[derive(Args, Clone)]
+pub struct UntilArgs {
+    /// Of a pipeline that gets better from frame to frame: stop after so many samples for each pixel.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    samples: Option<u64>,
+    /// … after this time.
+    #[arg(long, value_name = "SECONDS", value_parser = super::seconds)]
+    seconds: Option<f64>,
+    /// … when the noise of every output is below this relative squared error.
+    #[arg(long, value_name = "RELMSE", value_parser = super::rate)]
+    error: Option<f64>,
+}
+
+impl UntilArgs {
+    pub fn given(&self) -> bool {
+        self.samples.is_some() || self.seconds.is_some() || self.error.is_some()
+    }
+
+    /// What was asked for, or else `otherwise`.
+    pub fn until(&self, otherwise: Until) -> Until {
+        let time = self.seconds.map(Duration::from_secs_f64);
+        if self.given() { Until { samples: self.samples, time, error: self.error } } else { otherwise }
+    }
+}
+
+/// A bar on standard error that goes from 0 to 1, for `what`.
+pub fn steps(what: &str) -> ProgressBar {
+    let bar = ProgressBar::new(STEPS);
+    if let Ok(style) = ProgressStyle::with_template("{prefix} {wide_bar} {msg}") {
+        bar.set_style(style);
+    }
+    bar.set_prefix(what.to_owned());
+    bar
+}
+
+const STEPS: u64 = 1000;
+
+pub fn show(bar: &ProgressBar, step: &Step) {
+    bar.set_position((step.done * STEPS as f64) as u64);
+    let left = step.left.map_or_else(String::new, |left| format!(", {left:.0} s left"));
+    bar.set_message(format!("{} samples{left}", step.samples));
 }
 
 /// Everything that is known before a device is opened.

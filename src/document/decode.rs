@@ -3,12 +3,13 @@
 use super::read::{Fields, Reader};
 use super::tree::{Node, Tree};
 use super::{
-    Allowed, Cause, Compare, Document, Filter, Knob, Lack, Resource, Root, Sampler, Spanned, Start, Wrap,
+    Allowed, Cause, Compare, Document, Filter, Knob, Lack, Progress, Resource, Root, Sampler, Spanned, Start,
+    Wrap,
 };
 use crate::problem::Problem;
 
 const SHARED: [&str; 7] = ["about", "knobs", "values", "samplers", "resources", "stages", "lacks"];
-const OF_PIPELINES: [&str; 2] = ["parts", "outputs"];
+const OF_PIPELINES: [&str; 3] = ["parts", "outputs", "progress"];
 const OF_PARTS: [&str; 3] = ["role", "module", "exports"];
 
 pub(super) const COMPARES: [(&str, Compare); 6] = [
@@ -88,7 +89,16 @@ impl Reader<'_> {
     fn pipeline(&mut self, fields: &Fields<'_>) -> Option<Root> {
         let parts = self.entries(fields.get("parts"), Self::text);
         let outputs = self.entries(fields.get("outputs"), Self::text);
-        Some(Root::Pipeline { parts: parts?, outputs: outputs? })
+        let progress = self.optional(fields.get("progress"), Self::progress);
+        Some(Root::Pipeline { parts: parts?, outputs: outputs?, progress: progress? })
+    }
+
+    fn progress(&mut self, tree: &Tree) -> Option<Progress> {
+        let fields = self.fields(tree, "progress", &["batch", "frames", "first"])?;
+        let batch = self.required(&fields, "batch").and_then(|tree| self.expression(tree));
+        let frames = self.required(&fields, "frames").and_then(|tree| self.expression(tree));
+        let first = self.required(&fields, "first").and_then(|tree| self.text(tree));
+        Some(Progress { batch: batch?, frames: frames?, first: first? })
     }
 
     fn part(&mut self, fields: &Fields<'_>) -> Option<Root> {

@@ -62,6 +62,18 @@ pub struct Lack {
     pub what: Spanned<String>,
 }
 
+/// `(batch: "batch", frames: "frames_of_a_batch", first: "first_sample")`: of a pipeline whose outputs get better from
+/// frame to frame. Outputs are means of samples; an output `X_variance` is the variance of the mean `X`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Progress {
+    /// Samples of a batch: outputs are whole after each.
+    pub batch: ExprText,
+    /// Frames that a batch takes.
+    pub frames: ExprText,
+    /// The knob that says how many samples were drawn before the first frame.
+    pub first: Spanned<String>,
+}
+
 #[derive(Clone, Debug, PartialEq)]
 pub enum Root {
     Pipeline {
@@ -69,6 +81,7 @@ pub enum Root {
         parts: Entries<String>,
         /// Output name → the resource (or subresource) that holds it.
         outputs: Entries<String>,
+        progress: Option<Progress>,
     },
     Part {
         /// The role it can play.

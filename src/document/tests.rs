@@ -149,7 +149,7 @@ fn every_place_is_where_its_text_stands() {
         };
         assert!(stage.place.text().starts_with(name) && stage.place.text().ends_with(')'));
     }
-    let Root::Pipeline { parts, outputs } = &document.root else { panic!("a pipeline") };
+    let Root::Pipeline { parts, outputs, .. } = &document.root else { panic!("a pipeline") };
     texts.entries(parts);
     texts.entries(outputs);
     // 76 pairs of quotes, less 6 whose place is not kept (units, a knob's texts, a reason), and 11 without quotes.

@@ -35,6 +35,8 @@ pub fn of_scene(name: &str, over: Geometry, features: &BTreeMap<String, Value>) 
         "lights" => BTreeSet::from([bit(Cause::Lights)]),
         "views" => BTreeSet::from([bit(Cause::Lights), bit(Cause::Geometry)]),
         "instances" => geometry(over, features),
+        "bvh" => geometry(Geometry::All, features),
+        "emitters" => geometry(Geometry::All, features).into_iter().chain([bit(Cause::Lights)]).collect(),
         _ => BTreeSet::from([bit(Cause::Geometry)]),
     }
 }

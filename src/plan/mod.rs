@@ -67,6 +67,8 @@ pub struct Plan {
     pub modules: BTreeMap<String, Module>,
     /// What the scene calls for and the pipeline or a part of it can't do; without a scene, what that could be.
     pub lacks: Vec<PlannedLack>,
+    /// How outputs get better from frame to frame, if they do.
+    pub progress: Option<PlannedProgress>,
     /// What is wrong but does not stop the plan.
     pub warnings: Vec<crate::problem::Problem>,
 }
@@ -78,6 +80,17 @@ pub struct PlannedLack {
     pub what: String,
     /// Without a scene: when that is so.
     pub unknown: Option<String>,
+}
+
+/// Outputs are means over samples that frames add.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlannedProgress {
+    /// Samples of a batch: outputs are whole after each.
+    pub batch: u64,
+    /// Frames that a batch takes.
+    pub frames: u64,
+    /// Path of the knob that says how many samples were drawn before.
+    pub first: String,
 }
 
 #[derive(Clone, Debug)]
@@ -342,6 +355,7 @@ pub fn expand(document: &Document, library: &Library, setup: &Setup) -> Result<P
             }
         }
     }
+    let progress = walk.progress(document, pipeline);
     let lacks = scoped.iter().map(|(player, own)| (&player.document, *own));
     let lacks = std::iter::once((document, pipeline)).chain(lacks);
     let lacks = lacks.flat_map(|(document, scope)| walk.lacks(document, scope)).collect();
@@ -367,6 +381,7 @@ pub fn expand(document: &Document, library: &Library, setup: &Setup) -> Result<P
         stages,
         outputs,
         lacks,
+        progress,
         warnings,
     })
 }

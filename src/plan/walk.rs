@@ -2,7 +2,10 @@
 
 use super::parts::Player;
 use super::world::{Live, World};
-use super::{Condition, Element, Named, PlannedLack, PlannedStage, Reference, ResourceId, ScopeId, Work};
+use super::{
+    Condition, Element, Named, PlannedLack, PlannedProgress, PlannedStage, Reference, ResourceId, ScopeId,
+    Work,
+};
 use crate::document::{self, Call, Cause, Document, ExprText, Spanned, Stage};
 use crate::expr::Value;
 use crate::problem::{Place, Problem};
@@ -176,6 +179,21 @@ impl<'w, 'a> Walk<'w, 'a> {
             }
         };
         document.lacks.iter().filter_map(lack).collect()
+    }
+
+    /// How the pipeline's outputs get better; `None` also where that can't be known without a scene.
+    pub fn progress(&self, document: &Document, scope: ScopeId) -> Option<PlannedProgress> {
+        let document::Root::Pipeline { progress: Some(progress), .. } = &document.root else { return None };
+        let batch = self.world.whole(&progress.batch, scope, 1, Live::Yes);
+        let frames = self.world.whole(&progress.frames, scope, 1, Live::Yes);
+        let first = &progress.first;
+        if !self.world.knobs.iter().any(|knob| knob.path == first.value) {
+            let problem = Problem::input("unknown-knob", format!("there is no knob `{}`", first.value))
+                .at(&first.place, "named here")
+                .suggest(&first.value, self.world.knobs.iter().map(|knob| knob.path.as_str()));
+            self.world.report(problem);
+        }
+        Some(PlannedProgress { batch: batch?, frames: frames?, first: first.value.clone() })
     }
 
     /// A path that no stage has yet. Names that the file doesn't say get a number where needed.

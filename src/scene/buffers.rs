@@ -5,7 +5,7 @@ use bytemuck::{NoUninit, Zeroable};
 use std::borrow::Cow;
 
 /// Names of the built-in storage resources. [`super::layout::layout`] tells their elements.
-pub const NAMES: [&str; 9] = [
+pub const NAMES: [&str; 11] = [
     "vertices",
     "vertex_extras",
     "triangles",
@@ -15,6 +15,8 @@ pub const NAMES: [&str; 9] = [
     "lights",
     "views",
     "environment",
+    "emitters",
+    "bvh",
 ];
 
 impl Scene {
@@ -31,9 +33,15 @@ impl Scene {
             "lights" => list(&self.lights),
             "views" => list(&self.views),
             "environment" => list(self.environment.as_ref().map_or(&[][..], |e| &e.texels)),
+            "emitters" => owned(&super::emitters::emitters(self)),
+            "bvh" => owned(&super::bvh::words(self)),
             _ => return None,
         })
     }
+}
+
+fn owned<T: NoUninit>(items: &[T]) -> Cow<'static, [u8]> {
+    Cow::Owned(bytemuck::cast_slice(items).to_vec())
 }
 
 fn list<T: NoUninit + Zeroable>(items: &[T]) -> Cow<'_, [u8]> {

@@ -19,8 +19,10 @@ pub struct Environment {
     pub width: u32,
     pub height: u32,
     pub levels: u32,
-    /// The picture, then its mip levels, each half the one before, rounded down but at least 1; the fourth component is 0.
-    /// A level is the mean of the one before over solid angle.
+    /// The picture, then its mip levels, each half the one before, rounded down but at least 1; a level is the mean of
+    /// the one before over solid angle. Then what directions are chosen by, in proportion to luminance: the fourth
+    /// component of the picture's texels is the probability of this column or one before, given the row, and at the end
+    /// each row has an element whose first component is the probability of this row or one above.
     pub texels: Vec<Vec4>,
     /// Radians by which the picture is turned about the vertical axis, from −z towards +x.
     pub turn: f32,
@@ -67,6 +69,7 @@ impl Environment {
         }
         let mut made = Self { width, height, levels: 1, texels, turn: 0.0 };
         made.add_levels();
+        made.add_probabilities();
         Ok(made)
     }
 
@@ -81,10 +84,46 @@ impl Environment {
         self.levels = sizes.len() as u32;
     }
 
+    fn add_probabilities(&mut self) {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let luminance = |texel: &Vec4| f64::from(texel.truncate().dot(Vec3::new(0.2126, 0.7152, 0.0722)));
+        let angle = |row: usize| (row as f64 / height as f64 * std::f64::consts::PI).cos();
+        let mut rows = Vec::with_capacity(height);
+        for (y, row) in self.texels[..width * height].chunks_exact_mut(width).enumerate() {
+            let sums: Vec<f64> = running(row.iter().map(luminance));
+            let total = sums.last().copied().unwrap_or(0.0);
+            for (x, (texel, sum)) in row.iter_mut().zip(&sums).enumerate() {
+                // A black row is never chosen.
+                texel.w = if total > 0.0 { sum / total } else { (x + 1) as f64 / width as f64 } as f32;
+            }
+            rows.push(total * (angle(y) - angle(y + 1)));
+        }
+        let sums = running(rows.into_iter());
+        let total = sums.last().copied().unwrap_or(0.0);
+        let probability = |(y, sum)| if total > 0.0 { sum / total } else { (y + 1) as f64 / height as f64 };
+        self.texels.extend(
+            sums.into_iter().enumerate().map(|row| Vec4::new(probability(row) as f32, 0.0, 0.0, 0.0)),
+        );
+    }
+
+    /// Index of the element of the first row.
+    pub fn first_row(&self) -> usize {
+        self.texels.len() - self.height as usize
+    }
+
     /// Mean radiance over all directions.
     pub fn mean(&self) -> Vec3 {
-        self.texels.last().map_or(Vec3::ZERO, |texel| texel.truncate())
+        self.texels[self.first_row() - 1].truncate()
     }
+}
+
+fn running(numbers: impl Iterator<Item = f64>) -> Vec<f64> {
+    numbers
+        .scan(0.0, |sum, number| {
+            *sum += number;
+            Some(*sum)
+        })
+        .collect()
 }
 
 /// The sizes of all levels.

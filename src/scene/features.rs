@@ -63,6 +63,7 @@ features! { scene, used;
     "scene.instances" Number "Number of placings of mesh parts." = scene.instances.len() as f64;
     "scene.min" Vector "Least corner of the box around all triangles, in metres." = vector(scene.bounds.min);
     "scene.max" Vector "Greatest corner of the box around all triangles, in metres." = vector(scene.bounds.max);
+    "scene.center" Vector "Centre of that box, in metres." = scene.bounds.center().to_array();
     "scene.emissive" Flag "Some triangle gives off light." = used.iter().any(|m| m.emission != Vec3::ZERO);
     "scene.max_emission" Number "Greatest emission of a triangle's material in a colour, W/(sr·m²); 0 without."
         = used.iter().fold(0.0, |greatest, m| f64::from(m.emission.max_element()).max(greatest));
@@ -102,6 +103,8 @@ features! { scene, used;
         = environment(scene, |e| e.height.into());
     "scene.environment_levels" Number "Mip levels of the environment's picture; 0 without."
         = environment(scene, |e| e.levels.into());
+    "scene.environment_rows" Number "Index of the element of the environment's first row; see the buffer `environment`."
+        = environment(scene, |e| e.first_row() as f64);
     "scene.environment_turn" Number "Radians by which the environment is turned about the vertical axis."
         = environment(scene, |e| e.turn.into());
     "cameras.total" Number "Number of cameras." = scene.cameras.len() as f64;

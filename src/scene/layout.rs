@@ -5,7 +5,7 @@
 //! `pad` have no counterpart in WGSL: they are the space it leaves.
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Mat4, UVec4, Vec2, Vec3, Vec4};
+use glam::{Mat4, UVec3, UVec4, Vec2, Vec3, Vec4};
 use half::f16;
 use std::mem::{offset_of, size_of};
 
@@ -151,6 +151,29 @@ pub struct View {
     pub pad: u32,
 }
 
+/// Something that gives light; see [`super::emitters`]. `kind`: that of a light, [`super::emitters::TRIANGLE`] or
+/// [`super::emitters::ENVIRONMENT`]. A light's position, direction and intensity are `a`, `b`, `c`; of a triangle these
+/// are the corners, of the environment they have no meaning.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+pub struct Emitter {
+    pub a: Vec3,
+    pub kind: u32,
+    pub b: Vec3,
+    pub instance: u32,
+    pub c: Vec3,
+    /// Of being chosen.
+    pub probability: f32,
+    /// The triangle's.
+    pub vertices: UVec3,
+    /// The emitter that is meant by an even choice of this one above `threshold`.
+    pub other: u32,
+    pub threshold: f32,
+    pub cos_outer: f32,
+    pub cos_inner: f32,
+    pub pad: u32,
+}
+
 /// A camera for one aspect ratio; made by [`super::Camera::uniform`].
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
@@ -182,6 +205,7 @@ pub enum FieldKind {
     Vec2F,
     Vec2U,
     Vec3F,
+    Vec3U,
     Vec4F,
     Vec4U,
     Mat3x2F,
@@ -196,7 +220,7 @@ impl FieldKind {
         match self {
             FieldKind::F32 | FieldKind::U32 => 4,
             FieldKind::Vec2F | FieldKind::Vec2U => 8,
-            FieldKind::Vec3F => 12,
+            FieldKind::Vec3F | FieldKind::Vec3U => 12,
             FieldKind::Vec4F | FieldKind::Vec4U => 16,
             FieldKind::Mat3x2F => 24,
             FieldKind::Mat3x3F => 48,
@@ -211,6 +235,7 @@ impl FieldKind {
             FieldKind::Vec2F => "vec2f",
             FieldKind::Vec2U => "vec2u",
             FieldKind::Vec3F => "vec3f",
+            FieldKind::Vec3U => "vec3u",
             FieldKind::Vec4F => "vec4f",
             FieldKind::Vec4U => "vec4u",
             FieldKind::Mat3x2F => "mat3x2f",
@@ -275,6 +300,11 @@ static VIEW: StructLayout = layout_of!(View as "View" {
     view_projection: Mat4x4F, position: Vec3F, light: U32, direction: Vec3F, face: U32, near: F32, far: F32,
     texel: F32
 });
+static EMITTER: StructLayout = layout_of!(Emitter as "Emitter" {
+    a: Vec3F, kind: U32, b: Vec3F, instance: U32, c: Vec3F, probability: F32, vertices: Vec3U, other: U32,
+    threshold: F32, cos_outer: F32, cos_inner: F32
+});
+static BVH: StructLayout = StructLayout { name: "vec4u", stride: 16, fields: &[] };
 static CAMERA: StructLayout = layout_of!(CameraUniform as "Camera" {
     view_projection: Mat4x4F, inverse_view_projection: Mat4x4F, position: Vec3F, near: F32, forward: Vec3F,
     aspect: F32, right: Vec3F, parallel: F32, up: Vec3F, distance: Vec4F
@@ -295,6 +325,8 @@ pub fn layout(name: &str) -> Option<&'static StructLayout> {
         "environment" => &ENVIRONMENT,
         "lights" => &LIGHT,
         "views" => &VIEW,
+        "emitters" => &EMITTER,
+        "bvh" => &BVH,
         "camera" => &CAMERA,
         _ => return None,
     })

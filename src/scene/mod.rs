@@ -16,14 +16,18 @@
 //! | [`buffers`] | the lists as bytes |
 //! | [`views`] | the scene as its lights see it |
 //! | [`environment`] | light from far away |
+//! | [`emitters`] | all that gives light, to choose from |
+//! | [`bvh`] | the triangles as rays find them |
 //! | [`features`] | what conditions can ask about a scene |
 //! | [`generate`] | scenes made from published numbers |
 //! | [`listing`] | what scenes a folder has |
 
 mod bounds;
 pub mod buffers;
+pub mod bvh;
 mod camera;
 mod course;
+pub mod emitters;
 pub mod environment;
 pub mod features;
 pub mod generate;

@@ -1,0 +1,75 @@
+// Directions towards the environment, chosen as it is bright: a row, then a column of it, by halving the engine's running
+// probabilities; evenly over the solid angle of the texel.
+//
+// Cost of a choice: log2 of rows and of columns, elements of 16 B.
+
+import lib/environment;
+import lib/math;
+
+/// The first of `count` elements whose probability is above `choice`; `within`: columns of a row, else rows.
+fn environment_find(begin: u32, count: u32, within: bool, choice: f32) -> u32 {
+    var low = 0u;
+    var high = count - 1u;
+    while low < high {
+        let middle = (low + high) / 2u;
+        if environment_running(begin + middle, within) > choice {
+            high = middle;
+        } else {
+            low = middle + 1u;
+        }
+    }
+    return low;
+}
+
+fn environment_running(element: u32, within: bool) -> f32 {
+    return select(environment[element].x, environment[element].w, within);
+}
+
+/// Of running probabilities: that of the element itself (x), and of all before (y).
+fn environment_part(begin: u32, index: u32, within: bool) -> vec2f {
+    var before = 0.0;
+    if index > 0u {
+        before = environment_running(begin + index - 1u, within);
+    }
+    return vec2f(environment_running(begin + index, within) - before, before);
+}
+
+/// Probability of a texel, per steradian.
+fn environment_texel_density(column: u32, row: u32) -> f32 {
+    let width = scene.environment_width;
+    let probability = environment_part(scene.environment_rows, row, false).x
+        * environment_part(row * width, column, true).x;
+    let height = f32(scene.environment_height);
+    let bottom = cos(PI * f32(row + 1u) / height);
+    let solid_angle = 2.0 * PI / f32(width) * (cos(PI * f32(row) / height) - bottom);
+    return probability / solid_angle;
+}
+
+/// A direction (xyz), and its density per steradian (w).
+fn environment_choose(random: vec2f) -> vec4f {
+    let width = scene.environment_width;
+    let height = scene.environment_height;
+    let row = environment_find(scene.environment_rows, height, false, random.y);
+    let column = environment_find(row * width, width, true, random.x);
+    let down = environment_part(scene.environment_rows, row, false);
+    let along = environment_part(row * width, column, true);
+    let y = clamp((random.y - down.y) / max(down.x, 1e-12), 0.0, 1.0);
+    let x = clamp((random.x - along.y) / max(along.x, 1e-12), 0.0, 1.0);
+    let cosine = mix(cos(PI * f32(row) / f32(height)), cos(PI * f32(row + 1u) / f32(height)), y);
+    let around = 2.0 * PI * ((f32(column) + x) / f32(width) - 0.5) + scene.environment_turn;
+    let sine = sqrt(max(1.0 - cosine * cosine, 0.0));
+    return vec4f(sine * sin(around), cosine, -sine * cos(around), environment_texel_density(column, row));
+}
+
+/// Density of `environment_choose` for a direction.
+fn environment_density(direction: vec3f) -> f32 {
+    let upright = abs(direction.x) + abs(direction.z) < 1e-12;
+    let around = atan2(select(direction.x, 0.0, upright), select(-direction.z, 1.0, upright)) - scene.environment_turn;
+    let down = acos(clamp(direction.y, -1.0, 1.0)) / PI;
+    let column = u32(fract(around / (2.0 * PI) + 0.5) * f32(scene.environment_width));
+    let row = u32(down * f32(scene.environment_height));
+    return environment_texel_density(
+        min(column, scene.environment_width - 1u),
+        min(row, scene.environment_height - 1u),
+    );
+}

@@ -1,0 +1,250 @@
+// Path tracing: some samples of each pixel of a band of rows, by random walks from the camera, with next-event estimation
+// to all emitters and multiple importance sampling (Veach 1997, power heuristic).
+//
+// `direct` is visible emission and one scattering, `indirect` the rest. Ambient occlusion is the cosine-weighted share of
+// directions around the shading normal in which nothing lies within `ao_end`; 1 where there is no surface.
+// A thread goes from sample to sample of its pixel, and rays of all kinds are traced at one place, so that threads of a
+// subgroup seldom wait for each other (Novák, Havran, Dachsbacher 2010).
+// Cost: for each ray some 64 B a node and triangle met, for each surface some 500 B; writes 4 texels.
+
+import lib/bvh;
+import lib/camera;
+import lib/emitters;
+import lib/met;
+import lib/reflection;
+
+struct Knobs {
+    batch: u32,
+    first_sample: u32,
+    max_scatterings: u32,
+    seed: u32,
+}
+
+struct Values {
+    center: vec3f,
+    ao_end: f32,
+    bands: u32,
+    /// Samples of a pixel that a frame adds.
+    round_samples: u32,
+    band_pixels: u32,
+}
+
+struct Counted {
+    index: u32,
+}
+
+struct Counters {
+    paths: atomic<u32>,
+    rays: atomic<u32>,
+}
+
+var<uniform> knobs: Knobs;
+var<uniform> values: Values;
+var<uniform> frame: Counted;
+@if(count_rays)
+var<storage, read_write> counters: Counters;
+/// rgb: sum over samples; a: sum of openness.
+var sample_direct: texture_storage_2d<rgba32float, write>;
+var sample_indirect: texture_storage_2d<rgba32float, write>;
+/// a: how many samples met a surface.
+var sample_albedo: texture_storage_2d<rgba32float, write>;
+/// a: sum of distances along the camera's forward axis, metres.
+var sample_normal: texture_storage_2d<rgba32float, write>;
+
+/// What the ray in flight is for.
+const FOR_NEXT_SAMPLE: u32 = 0u;
+const FOR_PATH: u32 = 1u;
+const FOR_LIGHT: u32 = 2u;
+const FOR_OPENNESS: u32 = 3u;
+
+/// Pairs of random numbers: one for the pixel, one for openness, then these for each surface.
+const DIMENSIONS: u32 = 8u;
+const ROULETTE_FROM: u32 = 3u;
+
+struct PathRay {
+    origin: vec3f,
+    direction: vec3f,
+    far: f32,
+}
+
+/// One path on its way.
+struct Walk {
+    throughput: vec3f,
+    /// Scatterings so far.
+    scatterings: u32,
+    /// Of the direction of the last scattering, per steradian.
+    density: f32,
+    /// Distance along the camera's axis for each unit of its ray.
+    along: f32,
+}
+
+fn power_heuristic(own: f32, other: f32) -> f32 {
+    let ratio = other / max(own, 1e-30);
+    return select(1.0 / (1.0 + ratio * ratio), 0.0, own <= 0.0);
+}
+
+fn sample_of(pixel: vec2u, index: u32) -> Sample {
+    let bits = firstTrailingBit(knobs.batch);
+    let seed = hash_2(hash_2(hash_2(pixel.x, pixel.y), index >> bits), knobs.seed);
+    return Sample(seed, index & (knobs.batch - 1u), bits);
+}
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let size = textureDimensions(sample_direct);
+    let number = (frame.index % values.bands) * values.band_pixels + id.x;
+    if id.x >= values.band_pixels || number >= size.x * size.y {
+        return;
+    }
+    let pixel = vec2u(number % size.x, number / size.x);
+    var index = knobs.first_sample + frame.index / values.bands * values.round_samples;
+    let end = index + values.round_samples;
+
+    var direct = vec3f(0.0);
+    var indirect = vec3f(0.0);
+    var openness = 0.0;
+    var albedo = vec4f(0.0);
+    var normal = vec4f(0.0);
+    var rays = 0u;
+
+    var purpose = FOR_NEXT_SAMPLE;
+    var ray = PathRay(vec3f(0.0), vec3f(0.0), 0.0);
+    // What is traced after it: towards light, and the path's next piece. `far` is 0 where there is none.
+    var to_light = ray;
+    var onward = ray;
+    var arriving = vec3f(0.0);
+    var walk = Walk(vec3f(0.0), 0u, 0.0, 0.0);
+    var sample = sample_of(pixel, index);
+
+    loop {
+        if purpose == FOR_NEXT_SAMPLE {
+            if index == end {
+                break;
+            }
+            sample = sample_of(pixel, index);
+            index += 1u;
+            let seen = picture_ray((vec2f(pixel) + random_2(sample, 0u)) / vec2f(size));
+            let size_of_direction = length(seen.direction);
+            let nearest = seen.origin - values.center + seen.direction * camera.near;
+            let far = select(FAR_AWAY, depth_to_distance(0.0) - camera.near, camera.parallel > 0.0);
+            ray = PathRay(nearest, seen.direction / size_of_direction, far);
+            walk = Walk(vec3f(1.0), 0u, 0.0, 1.0 / size_of_direction);
+            purpose = FOR_PATH;
+        }
+        let hit = trace(ray.origin, ray.direction, ray.far, purpose != FOR_PATH);
+        rays += 1u;
+        if purpose == FOR_OPENNESS {
+            openness += select(0.0, 1.0, hit.record == NOTHING);
+        } else if purpose == FOR_LIGHT {
+            if hit.record == NOTHING {
+                if walk.scatterings == 1u {
+                    direct += arriving;
+                } else {
+                    indirect += arriving;
+                }
+            }
+        } else {
+            to_light.far = 0.0;
+            onward.far = 0.0;
+            var found = vec3f(0.0);
+            var other_density = 0.0;
+            var surface: Met;
+            if hit.record == NOTHING {
+                openness += select(0.0, 1.0, walk.scatterings == 0u);
+                @if(scene.environment) {
+                    found = environment_at(ray.direction, 0.0);
+                    other_density = environment_probability() * environment_density(ray.direction);
+                }
+            } else {
+                surface = met(hit, ray.direction);
+                found = surface.emission;
+                let cosine = abs(dot(surface.plane, ray.direction));
+                other_density = surface.density * hit.t * hit.t / max(cosine, 1e-20);
+            }
+            found *= walk.throughput
+                * select(power_heuristic(walk.density, other_density), 1.0, walk.scatterings == 0u);
+            if walk.scatterings < 2u {
+                direct += found;
+            } else {
+                indirect += found;
+            }
+            let first = walk.scatterings == 0u;
+            if hit.record != NOTHING && (first || walk.scatterings != knobs.max_scatterings) {
+                let base = 2u + DIMENSIONS * walk.scatterings;
+                let outside = leaving(surface.position, surface.plane, surface.slack);
+                let r = reflecting(
+                    surface.normal,
+                    surface.plane,
+                    -ray.direction,
+                    surface.albedo,
+                    surface.metallic,
+                    surface.roughness,
+                );
+                let emitter = emitters[chosen_emitter(random_1(sample, base))];
+                let light = arriving_from(emitter, outside, random_2(sample, base + 1u));
+                if light.density > 0.0 {
+                    let value = reflected(r, light.to_light);
+                    let weight = select(power_heuristic(light.density, value.density), 1.0, light.extentless);
+                    arriving = walk.throughput * value.value * light.light * (weight / light.density);
+                    if any(arriving > vec3f(0.0)) {
+                        // Ends on the near side of the emitter, as far off as rays that leave it begin.
+                        let reach = light.to_light * light.distance + light.plane * light.slack;
+                        to_light = PathRay(outside, light.to_light, light.distance);
+                        if !light.extentless && light.distance < FAR_AWAY {
+                            to_light.far = max(length(reach), 1e-30);
+                            to_light.direction = reach / to_light.far;
+                        }
+                    }
+                }
+                let direction = choose_direction(r, random_2(sample, base + 2u), random_1(sample, base + 3u));
+                let value = reflected(r, direction);
+                var throughput = vec3f(0.0);
+                if value.density > 0.0 {
+                    throughput = walk.throughput * value.value / value.density;
+                }
+                var survival = 1.0;
+                if walk.scatterings + 1u >= ROULETTE_FROM {
+                    survival = clamp(max(throughput.x, max(throughput.y, throughput.z)), 0.0, 0.98);
+                }
+                let lives = any(throughput > vec3f(0.0))
+                    && (survival == 1.0 || random_1(sample, base + 4u) < survival);
+                if lives {
+                    onward = PathRay(outside, direction, FAR_AWAY);
+                }
+                walk.throughput = throughput / max(survival, 1e-30);
+                walk.scatterings += 1u;
+                walk.density = value.density;
+                if first {
+                    albedo += vec4f(surface.albedo, 1.0);
+                    normal += vec4f(surface.normal, camera.near + hit.t * walk.along);
+                    let around = cosine_direction(surface.normal, random_2(sample, 1u));
+                    if dot(around, surface.plane) > 0.0 && values.ao_end > 0.0 {
+                        ray = PathRay(outside, around, values.ao_end);
+                        purpose = FOR_OPENNESS;
+                        continue;
+                    }
+                }
+            }
+        }
+        // The next ray of this path.
+        if to_light.far > 0.0 {
+            ray = to_light;
+            to_light.far = 0.0;
+            purpose = FOR_LIGHT;
+        } else if onward.far > 0.0 {
+            ray = onward;
+            onward.far = 0.0;
+            purpose = FOR_PATH;
+        } else {
+            purpose = FOR_NEXT_SAMPLE;
+        }
+    }
+    textureStore(sample_direct, pixel, vec4f(direct, openness));
+    textureStore(sample_indirect, pixel, vec4f(indirect, 0.0));
+    textureStore(sample_albedo, pixel, albedo);
+    textureStore(sample_normal, pixel, normal);
+    @if(count_rays) {
+        atomicAdd(&counters.paths, values.round_samples);
+        atomicAdd(&counters.rays, rays);
+    }
+}

@@ -1,0 +1,203 @@
+//! References, kept by what they depend on: made once, and resumed where more samples are wanted.
+//!
+//! Each is a folder of the cache, named by a hash of the files of the scene, the camera, the size, the knobs and every
+//! program of the pipeline. In it, `estimate-N.exr` holds the pictures after N samples for each pixel, and `estimate.json`
+//! says which is whole. The latter is written last, so that a run that was stopped leaves what there was before.
+
+use crate::converge::{Estimate, Step, Until, converge};
+use crate::device::Gpu;
+use crate::frame::Clock;
+use crate::library::Library;
+use crate::picture::{self, Picture};
+use crate::plan::PlannedProgress;
+use crate::problem::{Problem, Result};
+use crate::scene::Scene;
+use crate::session::{Prepared, Request, prepare};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Changes whenever estimates of before can't be gone on from.
+const FORMAT: u32 = 1;
+const FILE: &str = "estimate.json";
+
+/// A folder of references.
+#[derive(Clone, Debug)]
+pub struct Cache {
+    folder: PathBuf,
+}
+
+#[derive(Deserialize, Serialize)]
+struct Kept {
+    format: u32,
+    samples: u64,
+    seconds: f64,
+    /// What it is of, for people who look into the folder.
+    about: String,
+}
+
+/// An estimate, and what of it was there before.
+#[derive(Clone, Debug)]
+pub struct Made {
+    pub estimate: Estimate,
+    pub cached_samples: u64,
+    /// All knobs, by path.
+    pub knobs: BTreeMap<String, serde_json::Value>,
+}
+
+impl Cache {
+    pub fn at(folder: PathBuf) -> Self {
+        Self { folder }
+    }
+
+    /// The folder that `VOXGI_CACHE` names, or else `voxgi` in the user's cache folder.
+    pub fn of_user() -> Result<Self> {
+        let variable =
+            |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+        let folder = variable("VOXGI_CACHE")
+            .or_else(|| Some(variable("XDG_CACHE_HOME")?.join("voxgi")))
+            .or_else(|| Some(variable("HOME")?.join(".cache/voxgi")));
+        let folder = folder.ok_or_else(|| {
+            Problem::input("no-cache", "there is no folder to keep references in")
+                .help("set VOXGI_CACHE to a folder")
+        })?;
+        Ok(Self::at(folder.join("references")))
+    }
+
+    /// The reference of a scene by the pipeline that `request` names, good enough for `until`: from the cache, as far as it is
+    /// there, and the rest made now. `watch` sees how far it is.
+    pub fn get(
+        &self,
+        gpu: &Gpu,
+        scene: &Scene,
+        library: &Library,
+        request: &Request,
+        until: &Until,
+        watch: &mut dyn FnMut(Step) -> Result<()>,
+    ) -> Result<Made> {
+        let prepared = prepare(request, library, Some(scene))?;
+        let progress = progress(&prepared)?;
+        let knobs = prepared.graph.plan.knobs.iter();
+        let knobs: BTreeMap<String, serde_json::Value> =
+            knobs.map(|k| (k.path.clone(), crate::record::value(&k.value))).collect();
+        let folder = self.folder.join(key(scene, &prepared, &progress)?);
+        let before = read(&folder);
+        let cached_samples = before.as_ref().map_or(0, |estimate| estimate.samples);
+        if let Some(before) = &before
+            && is_enough(before, until)
+        {
+            return Ok(Made { estimate: before.clone(), cached_samples, knobs });
+        }
+        let mut request = request.clone();
+        request.sets.push((progress.first.clone(), cached_samples.to_string()));
+        let prepared = prepare(&request, library, Some(scene))?;
+        let mut frame = prepared.realise(gpu, scene, Clock::Wall("not timed".to_owned()), None)?;
+        let about = format!("{} by {}, {:?}", scene.name, request.pipeline, request.size);
+        let mut keep = |step: Step, estimate: Option<&Estimate>| {
+            if let Some(estimate) = estimate {
+                write(&folder, estimate, &about)?;
+            }
+            watch(step)
+        };
+        let (estimate, _) = converge(gpu, &mut frame, &progress, before.as_ref(), until, &mut keep)?;
+        write(&folder, &estimate, &about)?;
+        Ok(Made { estimate, cached_samples, knobs })
+    }
+}
+
+fn progress(prepared: &Prepared) -> Result<PlannedProgress> {
+    let plan = &prepared.graph.plan;
+    Ok(plan.progress.clone().ok_or_else(|| {
+        Problem::input("no-progress", format!("`{}` does not get better from frame to frame", plan.name))
+            .help("a reference is a pipeline that says `progress`, such as `reference`")
+    })?)
+}
+
+fn is_enough(estimate: &Estimate, until: &Until) -> bool {
+    let worst = || estimate.means().filter_map(|(name, _, _)| estimate.noise(name)).fold(0.0, f64::max);
+    let met = [
+        until.samples.map(|samples| estimate.samples >= samples),
+        until.time.map(|time| estimate.seconds >= time.as_secs_f64()),
+        until.error.map(|error| worst() <= error),
+    ];
+    met.into_iter().flatten().any(|met| met)
+}
+
+/// A name for all that the estimate depends on.
+fn key(scene: &Scene, prepared: &Prepared, progress: &PlannedProgress) -> Result<String> {
+    let mut hash = blake3::Hasher::new();
+    let mut add = |bytes: &[u8]| {
+        hash.update(&(bytes.len() as u64).to_le_bytes());
+        hash.update(bytes);
+    };
+    add(&FORMAT.to_le_bytes());
+    for file in &scene.files {
+        let content = std::fs::read(file)
+            .map_err(|e| Problem::input("scene-file", format!("can't read `{}`: {e}", file.display())))?;
+        add(&content);
+    }
+    // Where things are: the scene may be shown at any time of its motion.
+    add(bytemuck::cast_slice(&scene.instances));
+    add(bytemuck::cast_slice(&scene.lights));
+    let [width, height] = prepared.size;
+    let camera = scene.cameras[prepared.camera].uniform(f64::from(width) / f64::from(height));
+    add(bytemuck::bytes_of(&camera));
+    add(bytemuck::cast_slice(&[width, height]));
+    let plan = &prepared.graph.plan;
+    for knob in plan.knobs.iter().filter(|knob| knob.path != progress.first) {
+        add(knob.path.as_bytes());
+        add(knob.value.to_string().as_bytes());
+    }
+    for stage in prepared.graph.stages.iter().filter(|stage| stage.off.is_none()) {
+        add(stage.path.as_bytes());
+        if let Some(linked) = &stage.linked {
+            add(linked.reflected.composed.text.as_bytes());
+        }
+    }
+    Ok(hash.finalize().to_hex()[..32].to_owned())
+}
+
+fn pictures_of(folder: &Path, samples: u64) -> PathBuf {
+    folder.join(format!("estimate-{samples}.exr"))
+}
+
+/// What the folder holds; nothing if it is not whole.
+fn read(folder: &Path) -> Option<Estimate> {
+    let kept: Kept = serde_json::from_slice(&std::fs::read(folder.join(FILE)).ok()?).ok()?;
+    let pictures = picture::read_exr(&pictures_of(folder, kept.samples)).ok()?;
+    let whole = kept.format == FORMAT && !pictures.is_empty();
+    whole.then(|| Estimate {
+        samples: kept.samples,
+        seconds: kept.seconds,
+        pictures: pictures.into_iter().collect(),
+    })
+}
+
+fn write(folder: &Path, estimate: &Estimate, about: &str) -> Result<()> {
+    let failed = |e: std::io::Error| {
+        Problem::failure("cache-write", format!("can't keep the reference in `{}`: {e}", folder.display()))
+            .help("set VOXGI_CACHE to a folder that can be written to")
+    };
+    std::fs::create_dir_all(folder).map_err(failed)?;
+    let layers: Vec<(&str, &Picture)> =
+        estimate.pictures.iter().map(|(name, p)| (name.as_str(), p)).collect();
+    let file = pictures_of(folder, estimate.samples);
+    picture::write_exr(&file, &layers)?;
+    let kept = Kept {
+        format: FORMAT,
+        samples: estimate.samples,
+        seconds: estimate.seconds,
+        about: about.to_owned(),
+    };
+    let json = serde_json::to_vec_pretty(&kept)
+        .map_err(|e| Problem::failure("cache-write", format!("can't describe the reference: {e}")))?;
+    picture::write_bytes(&folder.join(FILE), &json)?;
+    for entry in std::fs::read_dir(folder).map_err(failed)?.flatten() {
+        let path = entry.path();
+        if path.extension().is_some_and(|extension| extension == "exr") && path != file {
+            // Another run may be reading it; then it stays.
+            let _gone = std::fs::remove_file(path);
+        }
+    }
+    Ok(())
+}
