@@ -23,6 +23,7 @@ pub mod problem;
 pub mod profile;
 pub mod record;
 pub mod reference;
+pub mod report;
 pub mod scene;
 pub mod schedule;
 pub mod session;

@@ -65,7 +65,8 @@ impl Axis {
         let (low, high) = (low - extent * MARGIN, high + extent * MARGIN);
         let rough = (high - low) / LABELS;
         let power = 10_f64.powf(rough.log10().floor());
-        let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|s| s * power).find(|s| *s >= rough).unwrap_or(rough);
+        let step =
+            [1.0, 2.0, 5.0, 10.0].into_iter().map(|s| s * power).find(|s| *s >= rough).unwrap_or(rough);
         let first = (low / step).ceil();
         let ticks = (0..=20).map(|at| (first + f64::from(at)) * step).take_while(|tick| *tick <= high);
         Self { title: title.into(), scale: Scale::Linear, low, high, ticks: ticks.collect() }
@@ -117,7 +118,11 @@ impl Ranged for Axis {
     }
 
     fn range(&self) -> Range<f64> {
-        if self.scale == Scale::Log { 10_f64.powf(self.low)..10_f64.powf(self.high) } else { self.low..self.high }
+        if self.scale == Scale::Log {
+            10_f64.powf(self.low)..10_f64.powf(self.high)
+        } else {
+            self.low..self.high
+        }
     }
 }
 

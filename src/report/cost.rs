@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 /// The wide one, and one for phones: text keeps its size.
 const SIZES: [(&str, [u32; 2]); 2] = [("wide", [860, 470]), ("narrow", [343, 380])];
 /// Names beside points are at most this many characters long; longer ones are in the list alone.
-const LONGEST: usize = 48;
+const LONGEST: usize = 56;
 /// With more points than these, only those of the front have their names beside them.
 const FEW: usize = 10;
 /// Percent above the least error.
@@ -71,7 +71,8 @@ impl<'a> Chart<'a> {
         // Noise is a relMSE; it says nothing of other measures.
         let references = scene.entry.references.iter().filter(|_| measure.key == "relmse");
         let noise = references.filter_map(|(name, reference)| {
-            let noise = reference.noise.get(output).copied().filter(|noise| noise.is_finite() && *noise > 0.0)?;
+            let noise =
+                reference.noise.get(output).copied().filter(|noise| noise.is_finite() && *noise > 0.0)?;
             let used = scene.runs.iter().any(|run| run.run.reference == *name);
             used.then_some((name.as_str(), noise))
         });
@@ -80,7 +81,11 @@ impl<'a> Chart<'a> {
 
     fn figure(&self) -> Result<Markup> {
         if self.points.is_empty() {
-            return Ok(html! { p class="quiet" { "No run has both a time and " (self.measure.title) " of " (self.output) "." } });
+            return Ok(html! {
+                p class="quiet" {
+                    "No run has both a time and " (self.measure.title) " of " (self.output) "."
+                }
+            });
         }
         let mut drawings = Vec::new();
         for (class, size) in SIZES {
@@ -112,7 +117,8 @@ impl<'a> Chart<'a> {
 
     fn drawing(&self, class: &str, size: [u32; 2]) -> Result<Markup> {
         let wide = class == "wide";
-        let times = self.points.iter().flat_map(|point| self.bar(point).into_iter().flatten().chain([point.time]));
+        let times =
+            self.points.iter().flat_map(|point| self.bar(point).into_iter().flatten().chain([point.time]));
         let errors = self.points.iter().map(|point| point.error).chain(self.noise.values().copied());
         let x = Axis::log("GPU time of a frame, ms (log)", times);
         let y = Axis::log(format!("{} of {} (log)", self.measure.title, self.output), errors);
@@ -169,7 +175,11 @@ impl<'a> Chart<'a> {
         for (name, noise) in &self.noise {
             let y = frame.at(1.0, *noise).1;
             plot.dashes((frame.left, y), (frame.right, y), Ink::Noise)?;
-            let text = if self.noise.len() > 1 { format!("noise of {name}") } else { "reference's noise".to_owned() };
+            let text = if self.noise.len() > 1 {
+                format!("noise of {name}")
+            } else {
+                "reference's noise".to_owned()
+            };
             // Below the left end, where nothing is both fast and that right.
             plot.text(&text, (frame.left + 6, y + 4), Ink::Muted, (HPos::Left, VPos::Top))?;
         }

@@ -49,7 +49,8 @@ fn output(view: &View, scene: &SceneView, output: &str, files: &Files) -> Result
         } @else {
             p class="quiet" {
                 "Runs whose times are within " (SHARE * 100.0) " % of the fastest, or else the nearest two; the "
-                (SIDE) "-pixel square in which they differ most from the reference as it is displayed, in sum over these runs."
+                (SIDE) "-pixel square in which they differ most from the reference as it is displayed, in sum "
+                "over these runs."
             }
         }
         @for row in &rows { (row) }
@@ -64,7 +65,8 @@ fn row(scene: &SceneView, output: &str, runs: &[&RunView], files: &Files) -> Res
             (run.run.pictures.get(output), run.reference.and_then(|reference| reference.pictures.get(output)))
         {
             let own = files.read(&own.png, &format!("output `{output}` of run `{name}`"))?;
-            let truth = files.read(&truth.png, &format!("output `{output}` of reference `{}`", run.run.reference))?;
+            let truth =
+                files.read(&truth.png, &format!("output `{output}` of reference `{}`", run.run.reference))?;
             pictures.push((run, own, truth));
         }
     }
@@ -97,7 +99,11 @@ fn row(scene: &SceneView, output: &str, runs: &[&RunView], files: &Files) -> Res
     }
     let times = runs.iter().filter_map(|run| run.run.gpu_ms.median);
     let (least, most) = times.fold((f64::INFINITY, 0.0), |(a, b): (f64, f64), t| (a.min(t), b.max(t)));
-    let times = if least.is_finite() { format!("{} to {}", milliseconds(Some(least)), milliseconds(Some(most))) } else { UNKNOWN.to_owned() };
+    let times = if least.is_finite() {
+        format!("{} to {}", milliseconds(Some(least)), milliseconds(Some(most)))
+    } else {
+        UNKNOWN.to_owned()
+    };
     Ok(html! {
         div class="row" {
             p { b { (times) } ", pixels from (" (corner[0]) ", " (corner[1]) ") on scene " (scene.entry.name) }

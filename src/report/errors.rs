@@ -65,7 +65,10 @@ fn masked(runs: &[&RunView], output: &str, measures: &[&Measure], masks: &BTreeS
     };
     html! {
         details {
-            summary { "The same over parts of the picture: " (masks.iter().map(|m| m.as_str()).collect::<Vec<_>>().join(", ")) }
+            summary {
+                "The same over parts of the picture"
+                @for (at, mask) in masks.iter().enumerate() { @if at == 0 { ": " } @else { ", " } (mask) }
+            }
             div class="wide-table" tabindex="0" role="region" aria-label={ "Errors of " (output) " over masks" } {
                 table class="sortable" {
                     caption { (output) " by mask; best of each mask in bold" }

@@ -75,6 +75,8 @@ pub fn crop(picture: &Encoded, corner: [u32; 2], size: [u32; 2]) -> Result<Strin
     }
     let mut png = Vec::new();
     let written = PngEncoder::new(&mut png).write_image(&rgb, size[0], size[1], ExtendedColorType::Rgb8);
-    written.map_err(|error| Problem::failure("report-picture", format!("can't cut a part out of a picture: {error}")))?;
+    written.map_err(|error| {
+        Problem::failure("report-picture", format!("can't cut a part out of a picture: {error}"))
+    })?;
     Ok(data_uri(&png))
 }

@@ -18,7 +18,10 @@ pub fn head(view: &View) -> Markup {
     let [width, height] = comparison.size;
     html! {
         header {
-            p class="quiet" { "voxgi " (comparison.version) ", " (comparison.command) ", " time datetime=(comparison.date) { (comparison.date) } }
+            p class="quiet" {
+                "voxgi " (comparison.version) ", " (comparison.command) ", "
+                time datetime=(comparison.date) { (comparison.date) }
+            }
             h1 { (comparison.name) }
             dl class="facts" {
                 div {
@@ -42,7 +45,10 @@ pub fn head(view: &View) -> Markup {
                         }
                     }
                 }
-                div { dt { "Pictures" } dd { "exposure " (exposure(comparison.exposure)) ", tone curve " (comparison.curve) } }
+                div {
+                    dt { "Pictures" }
+                    dd { "exposure " (exposure(comparison.exposure)) ", tone curve " (comparison.curve) }
+                }
                 div { dt { "Numbers" } dd { a href=(link(FILE)) { (FILE) } ", with all samples" } }
             }
             div class="wide-table" tabindex="0" role="region" aria-label="Scenes and references" {

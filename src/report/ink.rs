@@ -1,8 +1,8 @@
 //! Colours of charts, for light, dark and print.
 //!
-//! The chart library writes fixed colours into its SVG. Each [`Ink`] has one that no other ink has, and [`css`] turns it into
-//! a custom property by an attribute selector, `.plot [fill="#0072B2"] { fill: var(--series-0) }`; the page's style
-//! sets these for each scheme. The fixed colours are those of the light scheme, so a chart that is copied out of the
+//! The chart library writes fixed colours into its SVG. Each [`Ink`] has one that no other ink has, and [`css`] turns
+//! it into a custom property by an attribute selector, `.plot [fill="#0072B2"] { fill: var(--series-0) }`, and sets
+//! that for each scheme. The fixed colours are those of the light scheme, so a chart that is copied out of the
 //! page looks as it does there on paper.
 
 use plotters::style::RGBColor;
@@ -67,7 +67,8 @@ impl Ink {
     /// As the chart library takes it.
     pub fn color(self) -> RGBColor {
         let light = self.entry().1[0];
-        let channel = |at: usize| light.get(at..at + 2).and_then(|hex| u8::from_str_radix(hex, 16).ok()).unwrap_or(0);
+        let channel =
+            |at: usize| light.get(at..at + 2).and_then(|hex| u8::from_str_radix(hex, 16).ok()).unwrap_or(0);
         RGBColor(channel(1), channel(3), channel(5))
     }
 
@@ -77,7 +78,16 @@ impl Ink {
     }
 
     pub fn all() -> Vec<Ink> {
-        let mut all = vec![Ink::Text, Ink::Muted, Ink::Grid, Ink::Surface, Ink::Noise, Ink::Rest, Ink::Upon(0), Ink::Upon(1)];
+        let mut all = vec![
+            Ink::Text,
+            Ink::Muted,
+            Ink::Grid,
+            Ink::Surface,
+            Ink::Noise,
+            Ink::Rest,
+            Ink::Upon(0),
+            Ink::Upon(1),
+        ];
         all.extend((0..SERIES).map(Ink::Series));
         all
     }
@@ -96,10 +106,8 @@ pub fn css() -> String {
     for ink in Ink::all() {
         let ((name, _), RGBColor(r, g, b)) = (ink.entry(), ink.color());
         for attribute in ["fill", "stroke"] {
-            let _infallible = writeln!(
-                css,
-                ".plot [{attribute}=\"#{r:02X}{g:02X}{b:02X}\"]{{{attribute}:var(--{name})}}"
-            );
+            let _infallible =
+                writeln!(css, ".plot [{attribute}=\"#{r:02X}{g:02X}{b:02X}\"]{{{attribute}:var(--{name})}}");
         }
     }
     // Names of points may cross lines: they stand upon a rim of paper.

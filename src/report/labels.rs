@@ -17,11 +17,17 @@ struct Area {
 
 impl Area {
     fn overlaps(&self, other: &Area) -> bool {
-        self.left < other.right && other.left < self.right && self.top < other.bottom && other.top < self.bottom
+        self.left < other.right
+            && other.left < self.right
+            && self.top < other.bottom
+            && other.top < self.bottom
     }
 
     fn within(&self, other: &Area) -> bool {
-        self.left >= other.left && self.right <= other.right && self.top >= other.top && self.bottom <= other.bottom
+        self.left >= other.left
+            && self.right <= other.right
+            && self.top >= other.top
+            && self.bottom <= other.bottom
     }
 }
 
@@ -49,7 +55,8 @@ pub fn place(wishes: &[Wish], bounds: [At; 2]) -> Vec<(String, At)> {
     let mut placed = Vec::new();
     for wish in wishes {
         let choices = wish.texts.iter().flat_map(|text| around(wish, width(text)).map(|area| (text, area)));
-        let free = |(_, area): &(&String, Area)| area.within(&bounds) && !taken.iter().any(|t| t.overlaps(area));
+        let free =
+            |(_, area): &(&String, Area)| area.within(&bounds) && !taken.iter().any(|t| t.overlaps(area));
         let fallback = wish.texts.last().map(|text| (text, around(wish, width(text))[0]));
         if let Some((text, area)) = choices.clone().find(free).or(fallback) {
             taken.push(area);
@@ -64,9 +71,9 @@ fn around(wish: &Wish, width: i32) -> [Area; 8] {
     let (x, y) = wish.at;
     let (above, below, level) = (y - HEIGHT - 3, y + 4, y - HEIGHT / 2);
     let (right, centre, left) = (x + MARKER, x - width / 2, x - MARKER - width);
-    let mut corners = [(right, above), (right, below), (left, below), (left, above)];
+    let mut corners = [(right, above), (right, below), (left, above), (left, below)];
     if wish.low {
-        corners.swap(0, 2);
+        corners.rotate_right(1);
     }
     let sides = [(centre, above - MARKER), (centre, below + MARKER), (right + 2, level), (left - 2, level)];
     let [a, b, c, d] = corners;

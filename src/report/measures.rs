@@ -25,7 +25,13 @@ pub struct Measure {
 }
 
 impl Measure {
-    const fn new(key: &'static str, title: &'static str, best: Best, charted: bool, about: &'static str) -> Self {
+    const fn new(
+        key: &'static str,
+        title: &'static str,
+        best: Best,
+        charted: bool,
+        about: &'static str,
+    ) -> Self {
         Self { key, title, best, about, charted }
     }
 
@@ -46,8 +52,8 @@ pub const MEASURES: [Measure; 7] = [
         "relMSE",
         Best::Least,
         true,
-        "Mean over pixels and channels of (t − r)² / (r² + 0.01 M²): t the run, r the reference, M the reference's \
-         mean. 0.01 is a typical error of 10 %.",
+        "Mean over pixels and channels of (t − r)² / (r² + 0.01 M²): t the run, r the reference, M the \
+         reference's mean. 0.01 is a typical error of 10 %.",
     ),
     Measure::new(
         "relmse_trimmed",

@@ -1,9 +1,11 @@
 //! Each run's pictures against the reference's, with a slider, and maps of where they differ.
 
+use super::analysis::coordinate;
 use super::files::Files;
 use super::format::{milliseconds, number};
 use super::measures::MEASURES;
 use super::view::{RunView, SceneView, View};
+use crate::comparison::Run;
 use crate::problem::Result;
 use maud::{Markup, PreEscaped, html};
 
@@ -14,7 +16,8 @@ pub fn section(view: &View, scene: &SceneView, files: &Files) -> Result<Markup> 
         for (at, output) in view.outputs.iter().enumerate() {
             let needed = used.iter().any(|run| run.run.pictures.contains_key(output));
             if let (true, Some(pictures)) = (needed, reference.pictures.get(output)) {
-                let whose = format!("output `{output}` of reference `{name}` of scene `{}`", scene.entry.name);
+                let whose =
+                    format!("output `{output}` of reference `{name}` of scene `{}`", scene.entry.name);
                 let uri = files.embed(&pictures.png, &whose)?;
                 styles += &format!(".{}{{background-image:url({uri})}}\n", class(scene, number, at));
             }
@@ -31,7 +34,7 @@ pub fn section(view: &View, scene: &SceneView, files: &Files) -> Result<Markup> 
             style { (PreEscaped(styles)) }
             p class="scripted" {
                 label {
-                    "Run " 
+                    "Run "
                     select data-choose="run" data-scene=(scene.anchor()) {
                         @for run in &scene.runs {
                             option value=(run.anchor()) { (run.number) " " (run.run.name) }
@@ -69,11 +72,34 @@ fn run(view: &View, scene: &SceneView, run: &RunView, files: &Files) -> Result<M
                 ", against reference " (run.run.reference)
             }
             @for figure in &figures { (figure) }
+            (settings(run.run))
         }
     })
 }
 
-fn pictures(scene: &SceneView, run: &RunView, output: (usize, &str), files: &Files) -> Result<Option<Markup>> {
+/// Parts and knobs, those that were set in bold.
+fn settings(run: &Run) -> Markup {
+    let entry = |name: &str, value: &str| {
+        let text = html! { (name) "=" (value) };
+        html! { li { @if run.set.contains_key(name) { b { (text) } } @else { (text) } } }
+    };
+    html! {
+        details {
+            summary { "Settings" }
+            ul class="settings" {
+                @for (role, part) in &run.parts { (entry(role, part)) }
+                @for name in run.knobs.keys() { (entry(name, &coordinate(run, name))) }
+            }
+        }
+    }
+}
+
+fn pictures(
+    scene: &SceneView,
+    run: &RunView,
+    output: (usize, &str),
+    files: &Files,
+) -> Result<Option<Markup>> {
     let (at, output) = output;
     let Some(pictures) = run.run.pictures.get(output) else { return Ok(None) };
     let name = &run.run.name;
@@ -128,7 +154,9 @@ pub fn link(path: &str) -> String {
     let mut link = String::from("./");
     for byte in path.bytes() {
         match byte {
-            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'/' | b'.' | b'-' | b'_' | b'=' | b',' => link.push(char::from(byte)),
+            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'/' | b'.' | b'-' | b'_' | b'=' | b',' => {
+                link.push(char::from(byte))
+            }
             _ => link += &format!("%{byte:02X}"),
         }
     }

@@ -43,7 +43,7 @@ impl Frame {
     }
 }
 
-/// Draws a picture of `size` pixels, which `label` describes for those who don't see it.
+/// Draws a picture of `size` pixels, which `label` describes for those who don't see it; with none it is decoration.
 pub fn plot(size: [u32; 2], label: &str, draw: impl FnOnce(&Plot) -> Result<()>) -> Result<Markup> {
     let mut svg = String::new();
     {
@@ -52,9 +52,13 @@ pub fn plot(size: [u32; 2], label: &str, draw: impl FnOnce(&Plot) -> Result<()>)
         plot.area.present().map_err(undrawable)?;
     }
     // The library's root element has a fixed size and no name: its content moves into one of our own.
-    let body = svg.split_once('>').and_then(|(_, rest)| rest.rsplit_once("</svg>")).map_or("", |(body, _)| body);
+    let body =
+        svg.split_once('>').and_then(|(_, rest)| rest.rsplit_once("</svg>")).map_or("", |(body, _)| body);
+    let described = !label.is_empty();
     Ok(html! {
-        svg class="plot" viewBox={ "0 0 " (size[0]) " " (size[1]) } role="img" aria-label=(label) {
+        svg class="plot" viewBox={ "0 0 " (size[0]) " " (size[1]) }
+            role=[described.then_some("img")] aria-label=[described.then_some(label)]
+            aria-hidden=[(!described).then_some("true")] {
             (PreEscaped(body))
         }
     })
@@ -92,7 +96,14 @@ impl Plot<'_> {
             .draw()
             .map_err(undrawable)?;
         let (across, down) = chart.plotting_area().get_pixel_range();
-        Ok(Frame { left: across.start, right: across.end, top: down.start, bottom: down.end, x: x.clone(), y: y.clone() })
+        Ok(Frame {
+            left: across.start,
+            right: across.end,
+            top: down.start,
+            bottom: down.end,
+            x: x.clone(),
+            y: y.clone(),
+        })
     }
 
     fn draw<E>(&self, element: &E) -> Result<()>
@@ -134,12 +145,34 @@ impl Plot<'_> {
             2 => &[(0, -7), (7, 5), (-7, 5)],
             3 => &[(0, -7), (7, 0), (0, 7), (-7, 0)],
             4 => &[(0, 7), (7, -5), (-7, -5)],
-            5 => {
-                &[(-2, -7), (2, -7), (2, -2), (7, -2), (7, 2), (2, 2), (2, 7), (-2, 7), (-2, 2), (-7, 2), (-7, -2), (-2, -2)]
-            }
-            6 => {
-                &[(-6, -3), (-3, -6), (0, -3), (3, -6), (6, -3), (3, 0), (6, 3), (3, 6), (0, 3), (-3, 6), (-6, 3), (-3, 0)]
-            }
+            5 => &[
+                (-2, -7),
+                (2, -7),
+                (2, -2),
+                (7, -2),
+                (7, 2),
+                (2, 2),
+                (2, 7),
+                (-2, 7),
+                (-2, 2),
+                (-7, 2),
+                (-7, -2),
+                (-2, -2),
+            ],
+            6 => &[
+                (-6, -3),
+                (-3, -6),
+                (0, -3),
+                (3, -6),
+                (6, -3),
+                (3, 0),
+                (6, 3),
+                (3, 6),
+                (0, 3),
+                (-3, 6),
+                (-6, 3),
+                (-3, 0),
+            ],
             _ => &[(-3, -6), (3, -6), (7, 0), (3, 6), (-3, 6), (-7, 0)],
         };
         let mut outline: Vec<At> = corners.iter().map(|(x, y)| (at.0 + x, at.1 + y)).collect();

@@ -23,7 +23,8 @@ const FRAME: u32 = 56;
 type Times = BTreeMap<String, f64>;
 
 pub fn section(scene: &SceneView) -> Result<Markup> {
-    let times: Vec<(RunView, Times)> = scene.runs.iter().map(|run| (*run, self::times(&run.run.stages))).collect();
+    let times: Vec<(RunView, Times)> =
+        scene.runs.iter().map(|run| (*run, self::times(&run.run.stages))).collect();
     let names = largest(&times);
     let mut charts = Vec::new();
     for (class, width) in SIZES {
@@ -107,10 +108,12 @@ fn bars(times: &[(RunView, Times)], names: &[String], across: u32) -> Result<Mar
     let rows = u32::try_from(times.len()).unwrap_or(u32::MAX / BAR / 2);
     let size = [across, rows * BAR + FRAME];
     let total = |times: &Times| times.values().sum::<f64>();
-    let x = Axis::from_zero("ms, sum of the medians of the stages", times.iter().map(|(_, times)| total(times)));
+    let x =
+        Axis::from_zero("ms, sum of the medians of the stages", times.iter().map(|(_, times)| total(times)));
     // The first run on top.
     let y = Axis::names("", times.iter().rev().map(|(run, _)| run.number.to_string()).collect());
-    let label = format!("Time per stage of {} runs as stacked bars; tables below have the numbers", times.len());
+    let label =
+        format!("Time per stage of {} runs as stacked bars; tables below have the numbers", times.len());
     plot(size, &label, |plot| {
         let frame = plot.axes(&x, &y, 40)?;
         for (row, (_, times)) in times.iter().rev().enumerate() {
@@ -210,7 +213,11 @@ fn memory(scene: &SceneView) -> Markup {
             div class="wide-table" tabindex="0" role="region" aria-label="Memory" {
                 table class="sortable" {
                     caption { "Resources of the pipeline at once, kept ones included" }
-                    thead { tr { th scope="col" { "run" } th scope="col" class="n" { "peak" } th scope="col" class="n" { "first use, ms" } } }
+                    thead { tr {
+                        th scope="col" { "run" }
+                        th scope="col" class="n" { "peak" }
+                        th scope="col" class="n" { "first use, ms" }
+                    } }
                     tbody {
                         @for run in &scene.runs {
                             tr {

@@ -82,7 +82,10 @@ fn knob(view: &View, scene: &SceneView, name: &str) -> Result<Markup> {
 }
 
 fn describe(line: &Line) -> String {
-    let fixed = line.fixed.iter().map(|(name, value)| format!(" {name}={}", if value.is_empty() { UNKNOWN } else { value }));
+    let fixed = line
+        .fixed
+        .iter()
+        .map(|(name, value)| format!(" {name}={}", if value.is_empty() { UNKNOWN } else { value }));
     format!("{}{}", line.pipeline, fixed.collect::<String>())
 }
 
@@ -108,7 +111,11 @@ fn curves(runs: &[Run], lines: &[Line], name: &str, title: &str, of: Of) -> Resu
     };
     let place = |run: &Run| -> Option<f64> {
         let value = coordinate(run, name);
-        if is_number { value.parse().ok() } else { values.iter().position(|known| *known == value).map(|at| at as f64) }
+        if is_number {
+            value.parse().ok()
+        } else {
+            values.iter().position(|known| *known == value).map(|at| at as f64)
+        }
     };
     let all = lines.iter().flat_map(|line| &line.runs).filter_map(|run| of(&runs[*run]));
     let y = Axis::log(title, all);
@@ -148,7 +155,8 @@ fn table(view: &View, scene: &SceneView, output: &str, measure: &Measure) -> Mar
         div class="wide-table" tabindex="0" role="region" aria-label="Marginal cost and error" {
             table class="sortable" {
                 caption {
-                    "Medians over the pairs of runs that differ in that alone: time in ms, " (measure.title) " of " (output)
+                    "Medians over the pairs of runs that differ in that alone: time in ms, " (measure.title) " of "
+                    (output)
                 }
                 thead { tr {
                     th scope="col" { "knob or part" }
@@ -182,7 +190,8 @@ fn value(text: &str) -> &str {
 }
 
 fn stages(gone: &[String], new: &[String]) -> String {
-    let side = |sign: &str, names: &[String]| (!names.is_empty()).then(|| format!("{sign} {}", names.join(", ")));
+    let side =
+        |sign: &str, names: &[String]| (!names.is_empty()).then(|| format!("{sign} {}", names.join(", ")));
     let both: Vec<String> = side("−", gone).into_iter().chain(side("+", new)).collect();
     if both.is_empty() { "the same".to_owned() } else { both.join("; ") }
 }

@@ -19,7 +19,10 @@ fn numbers_have_three_digits() {
     assert_eq!([signed(-0.25), signed(0.25), signed(0.0)], ["−0.250", "+0.250", "0"]);
     assert_eq!([ratio(Some(2.0)), ratio(None)], ["× 2.00", "–"]);
     assert_eq!([bytes(1000), bytes(1536), bytes(3 << 20)], ["1000 B", "1.5 KiB", "3.0 MiB"]);
-    assert_eq!([count(999), count(1_000), count(1_234_567)], ["999", "1\u{202f}000", "1\u{202f}234\u{202f}567"]);
+    assert_eq!(
+        [count(999), count(1_000), count(1_234_567)],
+        ["999", "1\u{202f}000", "1\u{202f}234\u{202f}567"]
+    );
 }
 
 #[test]
@@ -35,13 +38,20 @@ fn ticks_are_round() {
 #[test]
 fn every_ink_has_a_colour_of_its_own() {
     let all = Ink::all();
-    let colors: BTreeSet<_> = all.iter().map(|ink| { let c = ink.color(); (c.0, c.1, c.2) }).collect();
+    let colors: BTreeSet<_> = all
+        .iter()
+        .map(|ink| {
+            let c = ink.color();
+            (c.0, c.1, c.2)
+        })
+        .collect();
     assert_eq!(colors.len(), all.len());
 }
 
 #[test]
 fn texts_of_charts_are_escaped() {
-    let svg = plot([100, 50], "<b>\"", |plot| plot.text("<script>&", (5, 5), Ink::Text, (HPos::Left, VPos::Top)));
+    let svg =
+        plot([100, 50], "<b>\"", |plot| plot.text("<script>&", (5, 5), Ink::Text, (HPos::Left, VPos::Top)));
     let svg = svg.expect("it can be drawn").into_string();
     assert!(svg.contains("&lt;script&gt;&amp;") && svg.contains("&lt;b&gt;&quot;"), "{svg}");
     assert!(!svg.contains("<script>") && !svg.contains("<b>"), "{svg}");
@@ -82,7 +92,8 @@ proptest! {
         values in prop::collection::vec(0..9_u64, 30), w in 1..=6_u32, h in 1..=5_u32,
     ) {
         let sum = |x: u32, y: u32| -> u64 {
-            (y..y + h).flat_map(|row| (x..x + w).map(move |column| (row * 6 + column) as usize)).map(|at| values[at]).sum()
+            let inside = (y..y + h).flat_map(|row| (x..x + w).map(move |column| row * 6 + column));
+            inside.map(|at| values[at as usize]).sum()
         };
         let [x, y] = crops::worst(&values, [6, 5], [w, h]);
         let largest = (0..=5 - h).flat_map(|y| (0..=6 - w).map(move |x| (x, y))).map(|(x, y)| sum(x, y)).max();

@@ -16,11 +16,13 @@ const PATIENCE: Duration = Duration::from_secs(120);
 fn find() -> Option<PathBuf> {
     let names = ["chromium", "chromium-browser", "google-chrome"];
     let path = std::env::var_os("PATH")?;
-    std::env::split_paths(&path).flat_map(|folder| names.map(|name| folder.join(name))).find(|file| file.is_file())
+    std::env::split_paths(&path)
+        .flat_map(|folder| names.map(|name| folder.join(name)))
+        .find(|file| file.is_file())
 }
 
-/// What the script in `drive.js` finds in the page of a comparison in a frame `width` pixels wide. `change` may spoil the
-/// page first. `None`, with a line that says so, where there is no browser.
+/// What the script in `drive.js` finds in the page of a comparison in a frame `width` pixels wide. `change` may spoil
+/// the page first. `None`, with a line that says so, where there is no browser.
 fn drive(width: u32, change: impl Fn(String) -> String) -> Option<Value> {
     let Some(browser) = find() else {
         println!("skipped: there is no chromium, chromium-browser or google-chrome in PATH");
@@ -81,7 +83,12 @@ fn is_right(width: u32, chart: &str) {
         "faults": [],
         "loaded": [],
         "overflow": [],
-        "first": { "outputs": ["color"], "measures": ["relmse"], "runs": ["run-1"], "charts": [format!("chart {chart}")] },
+        "first": {
+            "outputs": ["color"],
+            "measures": ["relmse"],
+            "runs": ["run-1"],
+            "charts": [format!("chart {chart}")],
+        },
         "chosen": { "outputs": ["direct"], "measures": ["flip"] },
         "run": { "chosen": ["run-3"], "linked": ["run-2"], "select": "run-2", "clicked": ["run-5"] },
         "slider": { "half": "50%", "moved": "20%", "dragged": "75%", "after": "75%", "uncut": true },
@@ -112,9 +119,11 @@ fn a_spoilt_page_is_noticed() {
         page.replacen("</main>", wrong, 1)
     };
     let Some(found) = drive(375, spoil) else { return };
-    let faults: Vec<&str> = found["faults"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
+    let faults: Vec<&str> =
+        found["faults"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
     assert!(faults.contains(&"on purpose"), "{faults:?}");
     assert!(faults.iter().any(|fault| fault.starts_with("policy: http://127.0.0.1:9")), "{faults:?}");
     assert_ne!(found["overflow"], serde_json::json!([]));
+    assert_eq!(found["unnamed"].as_array().map(Vec::len), Some(2), "the picture and the link");
     assert_eq!(found["points"]["lost"], serde_json::json!(["#run-999"]));
 }

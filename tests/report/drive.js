@@ -25,9 +25,9 @@
     const links = every("a.point");
     const lost = links.map((link) => link.getAttribute("href")).filter((href) => !document.querySelector(href));
     found.points = { some: links.length > 20, lost };
-    const named = (element) => element.alt ?? element.getAttribute("aria-label") ?? element.labels?.[0]?.textContent;
-    found.unnamed = every("img, svg.plot:not(.key .plot), input, select, a.point, [role=img]")
-      .filter((element) => !named(element) && !element.matches(".key .plot") && !lost.length)
+    const named = (element) => element.alt || element.getAttribute("aria-label") || element.labels?.[0]?.textContent;
+    found.unnamed = every("img, svg:not([aria-hidden]), input, select, a.point, [role=img]")
+      .filter((element) => !named(element))
       .map((element) => element.outerHTML.slice(0, 100));
 
     const slide = every(".slide").find(isShown);

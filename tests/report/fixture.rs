@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
-use voxgi::comparison::{Comparison, Memory, Pictures, Reference, Run, SCHEMA, SceneEntry, StageTime, Timing};
+use voxgi::comparison::{
+    Comparison, Memory, Pictures, Reference, Run, SCHEMA, SceneEntry, StageTime, Timing,
+};
 use voxgi::picture::{Curve, Encoded, Picture, write_encoded, write_png};
 use voxgi::record::{Adapter, Spread};
 
@@ -78,7 +80,8 @@ fn swept() -> Vec<Setting> {
             for gather in ["gather/few", "gather/many"] {
                 let many = gather.ends_with("many");
                 let size = f64::from(resolution) / 32.0;
-                let ms = 4.0 * size.powf(1.6) * (1.0 + 0.4 * f64::from(bounces)) * if many { 2.5 } else { 1.0 };
+                let ms =
+                    4.0 * size.powf(1.6) * (1.0 + 0.4 * f64::from(bounces)) * if many { 2.5 } else { 1.0 };
                 let error = 0.2 / size * 0.6_f64.powi(bounces) * if many { 0.5 } else { 1.0 } + 0.003;
                 let mut set = vec![("resolution", resolution.to_string()), ("bounces", bounces.to_string())];
                 set.push(("gather", gather.to_owned()));
@@ -141,7 +144,14 @@ fn run(folder: &Path, scene: &str, (at, number): (usize, usize), setting: &Setti
         let kept = path == "voxelize";
         StageTime {
             path: path.to_owned(),
-            status: if share == 0.0 { "dropped" } else if kept { "kept" } else { "run" }.to_owned(),
+            status: if share == 0.0 {
+                "dropped"
+            } else if kept {
+                "kept"
+            } else {
+                "run"
+            }
+            .to_owned(),
             reason: if share == 0.0 {
                 Some("scene.moving is false".to_owned())
             } else {
@@ -154,8 +164,17 @@ fn run(folder: &Path, scene: &str, (at, number): (usize, usize), setting: &Setti
     };
     let mut stages = vec![stage("voxelize", 0.2), stage("moving/clear", 0.0), stage("light/inject", 0.08)];
     stages.extend((0..3).map(|level| stage(&format!("mips/level[{level}]"), 0.05)));
-    stages.extend([stage("bounce/gather[1]", 0.15), stage("bounce/gather[2]", 0.12), stage("bounce/add", 0.04)]);
-    stages.extend([stage("surfaces", 0.06), stage("trace", 0.28), stage("filter/a", 0.03), stage("filter/b", 0.02)]);
+    stages.extend([
+        stage("bounce/gather[1]", 0.15),
+        stage("bounce/gather[2]", 0.12),
+        stage("bounce/add", 0.04),
+    ]);
+    stages.extend([
+        stage("surfaces", 0.06),
+        stage("trace", 0.28),
+        stage("filter/a", 0.03),
+        stage("filter/b", 0.02),
+    ]);
     stages.extend([stage("filter/c", 0.01), stage("display/tone", 0.04)]);
     if many {
         stages.push(stage("trace/second", 0.1));
@@ -174,7 +193,10 @@ fn run(folder: &Path, scene: &str, (at, number): (usize, usize), setting: &Setti
         scene: scene.to_owned(),
         reference: "full".to_owned(),
         pipeline: setting.pipeline.to_owned(),
-        parts: BTreeMap::from([("gather".to_owned(), part.map_or("gather/few".to_owned(), |(_, part)| part.clone()))]),
+        parts: BTreeMap::from([(
+            "gather".to_owned(),
+            part.map_or("gather/few".to_owned(), |(_, part)| part.clone()),
+        )]),
         knobs: BTreeMap::from([
             ("resolution".to_owned(), knob("resolution", 64)),
             ("bounces".to_owned(), knob("bounces", 1)),
@@ -196,9 +218,17 @@ fn run(folder: &Path, scene: &str, (at, number): (usize, usize), setting: &Setti
             .map(|(mask, factor)| (mask.to_owned(), errors(factor)))
             .into_iter()
             .collect(),
-        within_noise: if setting.error < NOISE { vec!["color".to_owned(), "direct".to_owned()] } else { vec![] },
+        within_noise: if setting.error < NOISE {
+            vec!["color".to_owned(), "direct".to_owned()]
+        } else {
+            vec![]
+        },
         memory: Memory { peak_bytes: (ms * 300_000.0) as u64 },
-        lacks: if setting.pipeline == "beta" { vec!["glossy surfaces are rendered matt".to_owned()] } else { vec![] },
+        lacks: if setting.pipeline == "beta" {
+            vec!["glossy surfaces are rendered matt".to_owned()]
+        } else {
+            vec![]
+        },
         pictures: pictures.into_iter().collect(),
     }
 }
@@ -228,7 +258,9 @@ fn pictures(folder: &Path, stem: &str, what: (usize, &str), run: Option<(usize, 
     Pictures {
         exr: format!("{}.exr", stem.rsplit_once('-').map_or(stem, |(run, _)| run)),
         png,
-        difference: map("difference", &|e| [level(1.0 + e.min(0.0)), level(1.0 - e.abs()), level(1.0 - e.max(0.0))]),
+        difference: map("difference", &|e| {
+            [level(1.0 + e.min(0.0)), level(1.0 - e.abs()), level(1.0 - e.max(0.0))]
+        }),
         flip: map("flip", &|e| [level(e.abs() * 1.5), level(e.abs() * 0.6), level(0.3 - e.abs() * 0.2)]),
     }
 }
@@ -241,7 +273,13 @@ fn pixels(texel: impl Fn(u32, u32) -> [f32; 3]) -> Picture {
 /// Three walls and a ball.
 fn radiance((scene, output): (usize, &str), x: u32, y: u32) -> [f32; 3] {
     let (u, v) = (x as f32 / SIZE as f32 - 0.5, y as f32 / SIZE as f32 - 0.5);
-    let wall = if u.abs() < 0.3 { [0.7, 0.7, 0.65] } else if u < 0.0 { [0.7, 0.1, 0.1] } else { [0.1, 0.5, 0.15] };
+    let wall = if u.abs() < 0.3 {
+        [0.7, 0.7, 0.65]
+    } else if u < 0.0 {
+        [0.7, 0.1, 0.1]
+    } else {
+        [0.1, 0.5, 0.15]
+    };
     let ball = ((u - 0.08).powi(2) + (v - 0.2).powi(2)).sqrt() < 0.18;
     let base = if ball { [0.3, 0.4, 0.8] } else { wall };
     let light = 0.25 + (0.9 - ((u * 1.2).powi(2) + (v + 0.5 - scene as f32 * 0.3).powi(2)).sqrt()).max(0.0);

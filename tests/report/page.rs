@@ -76,6 +76,21 @@ fn everything_that_was_said_is_there() {
     assert!(!page.contains("What each step costs and gives"));
 }
 
+/// Without scripts nothing takes `hidden` away.
+#[test]
+fn one_output_and_one_measure_are_shown_at_first() {
+    let (folder, comparison) = made("compare");
+    let page = page(&comparison, folder.path());
+    let choices = values(&page, "<div data-output=\"", '>');
+    let shown: Vec<&&str> = choices.iter().filter(|choice| !choice.ends_with("hidden")).collect();
+    assert!(shown.len() >= 2 && shown.iter().all(|choice| choice.starts_with("color\"")), "{shown:?}");
+    let charts: Vec<&&&str> = shown.iter().filter(|choice| choice.contains("data-measure")).collect();
+    assert_eq!(charts.len(), comparison.scenes.len());
+    assert!(charts.iter().all(|choice| choice.contains("\"relmse\"")), "{charts:?}");
+    assert_eq!(page.matches("class=\"run\"").count(), comparison.runs.len());
+    assert!(!page.contains("class=\"run unchosen"));
+}
+
 #[test]
 fn the_best_of_each_measure_is_bold() {
     let (folder, comparison) = made("compare");
@@ -91,7 +106,8 @@ fn a_sweep_says_what_each_step_gives() {
     let (folder, comparison) = made("sweep");
     let page = page(&comparison, folder.path());
     // Times are 4 · size^1.6: twice the resolution takes 2^1.6 = 3.03 times as long.
-    for words in ["32 → 64", "64 → 128", "gather/few → gather/many", "× 3.03", "× 2.50", "+ trace/second"] {
+    for words in ["32 → 64", "64 → 128", "gather/few → gather/many", "× 3.03", "× 2.50", "+ trace/second"]
+    {
         assert!(page.contains(words), "{words}");
     }
 }
@@ -148,7 +164,10 @@ fn what_is_missing_is_said() {
         changed
     };
     let message = refusal(&with("lost.png"));
-    assert!(message.contains("lost.png") && message.contains("`alpha resolution=128` on scene `cornell-box`"), "{message}");
+    assert!(
+        message.contains("lost.png") && message.contains("`alpha resolution=128` on scene `cornell-box`"),
+        "{message}"
+    );
     assert!(refusal(&with("comparison.json")).contains("comparison.json"));
     for outside in ["../x.png", "/etc/passwd", ""] {
         assert!(refusal(&with(outside)).contains("out of the folder"));

@@ -100,51 +100,58 @@ pub struct Marginal {
     pub stages_to: Vec<String>,
 }
 
+/// Two runs that differ in one coordinate alone: before and after.
+type Pair<'a> = [&'a Run; 2];
+
 /// The marginal cost and error of each step along each coordinate of `scene`: from each number to the next larger one,
 /// and from the first of other values (the one that is not set, if there is one) to each of the others.
 pub fn marginals(runs: &[Run], scene: &str, output: &str, measure: &str) -> Vec<Marginal> {
+    let error = |run: &Run| error(run, output, measure);
     let mut found = Vec::new();
     for name in coordinates(runs, scene) {
-        let mut steps: Vec<((String, String), Vec<[&Run; 2]>)> = Vec::new();
-        for line in lines(runs, scene, &name) {
-            for (at, after) in line.runs.iter().enumerate().skip(1) {
-                let before = if number(&runs[*after], &name).is_some() { at - 1 } else { 0 };
-                let pair = [&runs[line.runs[before]], &runs[*after]];
-                let key = (coordinate(pair[0], &name), coordinate(pair[1], &name));
-                match steps.iter_mut().find(|(known, _)| *known == key) {
-                    Some((_, pairs)) => pairs.push(pair),
-                    None => steps.push((key, vec![pair])),
-                }
-            }
+        for pairs in steps(runs, scene, &name) {
+            let known = pairs.iter().filter(|pair| both(pair, time).is_some() || both(pair, error).is_some());
+            found.push(Marginal {
+                from: coordinate(pairs[0][0], &name),
+                to: coordinate(pairs[0][1], &name),
+                name: name.clone(),
+                pairs: known.count(),
+                time: change(&pairs, time),
+                error: change(&pairs, error),
+                stages_from: stages_of_one(&pairs, 0),
+                stages_to: stages_of_one(&pairs, 1),
+            });
         }
-        steps.sort_by(|(_, a), (_, b)| {
-            by_value(a[0][0], b[0][0], &name).then_with(|| by_value(a[0][1], b[0][1], &name))
-        });
-        found.extend(steps.into_iter().map(|((from, to), pairs)| Marginal {
-            pairs: pairs
-                .iter()
-                .filter(|pair| {
-                    let error = |run: &Run| error(run, output, measure);
-                    both(pair, time).is_some() || both(pair, error).is_some()
-                })
-                .count(),
-            time: change(&pairs, time),
-            error: change(&pairs, |run| error(run, output, measure)),
-            stages_from: stages_of_one(&pairs, 0),
-            stages_to: stages_of_one(&pairs, 1),
-            name: name.clone(),
-            from,
-            to,
-        }));
     }
     found
 }
 
-fn both(pair: &[&Run; 2], of: impl Fn(&Run) -> Option<f64>) -> Option<[f64; 2]> {
+/// The pairs of each step along `name`, none empty, in order of their values.
+fn steps<'a>(runs: &'a [Run], scene: &str, name: &str) -> Vec<Vec<Pair<'a>>> {
+    let mut steps: Vec<Vec<Pair>> = Vec::new();
+    let order = |a: &Pair, b: &Pair| by_value(a[0], b[0], name).then_with(|| by_value(a[1], b[1], name));
+    for line in lines(runs, scene, name) {
+        for (at, after) in line.runs.iter().enumerate().skip(1) {
+            let before = if number(&runs[*after], name).is_some() { at - 1 } else { 0 };
+            let pair = [&runs[line.runs[before]], &runs[*after]];
+            let alike = |known: &&mut Vec<Pair>| {
+                (0..2).all(|side| coordinate(known[0][side], name) == coordinate(pair[side], name))
+            };
+            match steps.iter_mut().find(alike) {
+                Some(pairs) => pairs.push(pair),
+                None => steps.push(vec![pair]),
+            }
+        }
+    }
+    steps.sort_by(|a, b| order(&a[0], &b[0]));
+    steps
+}
+
+fn both(pair: &Pair, of: impl Fn(&Run) -> Option<f64>) -> Option<[f64; 2]> {
     Some([of(pair[0])?, of(pair[1])?])
 }
 
-fn change(pairs: &[[&Run; 2]], of: impl Fn(&Run) -> Option<f64>) -> Option<Change> {
+fn change(pairs: &[Pair], of: impl Fn(&Run) -> Option<f64>) -> Option<Change> {
     let known: Vec<[f64; 2]> = pairs.iter().filter_map(|pair| both(pair, &of)).collect();
     let differences: Vec<f64> = known.iter().map(|[before, after]| after - before).collect();
     let above = known.iter().filter(|[before, _]| *before > 0.0);
@@ -153,12 +160,12 @@ fn change(pairs: &[[&Run; 2]], of: impl Fn(&Run) -> Option<f64>) -> Option<Chang
 }
 
 /// What runs on one side of every pair and not on the other.
-fn stages_of_one(pairs: &[[&Run; 2]], side: usize) -> Vec<String> {
+fn stages_of_one(pairs: &[Pair], side: usize) -> Vec<String> {
     let running = |run: &Run| -> BTreeSet<String> {
         let stages = run.stages.iter().filter(|stage| stage.status != "dropped");
         stages.map(|stage| stage.path.clone()).collect()
     };
-    let alone = |pair: &[&Run; 2]| -> BTreeSet<String> { &running(pair[side]) - &running(pair[1 - side]) };
+    let alone = |pair: &Pair| -> BTreeSet<String> { &running(pair[side]) - &running(pair[1 - side]) };
     let common = pairs.iter().map(alone).reduce(|a, b| &a & &b);
     common.unwrap_or_default().into_iter().collect()
 }

@@ -66,8 +66,8 @@ pub fn cheapest_within(points: &[Point], percent: f64, noise: f64) -> Option<Poi
 }
 
 /// Runs whose times are alike: each group starts at the fastest run that is in none, and holds those that take at most
-/// `share` longer (0.2: a fifth). Groups of one are left out; if nothing else is there, the two that are nearest by ratio
-/// are a group. Both are in order of time.
+/// `share` longer (0.2: a fifth). Groups of one are left out; if nothing else is there, the two that are nearest by
+/// ratio are a group. Both are in order of time.
 pub fn equal_times(points: &[Point], share: f64) -> Vec<Vec<Point>> {
     let mut sorted = points.to_vec();
     sorted.sort_by(|a, b| a.time.total_cmp(&b.time).then(a.run.cmp(&b.run)));

@@ -68,7 +68,8 @@ fn what_is_not_known_takes_no_part() {
 
 #[test]
 fn the_front_leaves_out_what_another_run_beats() {
-    let points = [point(0, 4.0, 0.1), point(1, 1.0, 0.5), point(2, 2.0, 0.5), point(3, 2.0, 0.3), point(4, 5.0, 0.2)];
+    let points =
+        [point(0, 4.0, 0.1), point(1, 1.0, 0.5), point(2, 2.0, 0.5), point(3, 2.0, 0.3), point(4, 5.0, 0.2)];
     assert_eq!(indices(&front(&points)), [1, 3, 0]);
     assert!(front(&[]).is_empty());
 }
@@ -85,7 +86,13 @@ fn the_cheapest_is_the_fastest_that_is_good_enough() {
 
 #[test]
 fn runs_of_equal_time_are_together() {
-    let points = [point(0, 10.0, 0.1), point(1, 30.0, 0.1), point(2, 11.9, 0.1), point(3, 12.1, 0.1), point(4, 100.0, 0.1)];
+    let points = [
+        point(0, 10.0, 0.1),
+        point(1, 30.0, 0.1),
+        point(2, 11.9, 0.1),
+        point(3, 12.1, 0.1),
+        point(4, 100.0, 0.1),
+    ];
     let groups: Vec<Vec<usize>> = equal_times(&points, 0.2).iter().map(|group| indices(group)).collect();
     assert_eq!(groups, [[0, 2]]);
     let apart = [point(0, 1.0, 0.1), point(1, 10.0, 0.1), point(2, 40.0, 0.1)];
