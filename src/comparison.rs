@@ -96,6 +96,8 @@ pub struct Run {
     pub clock_reason: Option<String>,
     /// Of whole frames, on the GPU.
     pub gpu_ms: Timing,
+    /// The median of each time that it was run, on a device of its own each time; in the order of running.
+    pub repeats_ms: Vec<Option<f64>>,
     /// The first frame, in which drivers compile.
     pub first_use_ms: Option<f64>,
     pub encode_ms: Option<f64>,
@@ -110,6 +112,8 @@ pub struct Run {
     /// What the scene calls for and is not done, one sentence each.
     pub lacks: Vec<String>,
     pub pictures: BTreeMap<String, Pictures>,
+    /// The files of pipeline, parts and kernels as they were read → the copy in the folder.
+    pub documents: BTreeMap<String, String>,
 }
 
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]

@@ -215,6 +215,17 @@ fn facts(request: &Request, scene: Option<&Scene>) -> BTreeMap<String, Value> {
 }
 
 impl Prepared {
+    /// Name and text of every file that it comes from: pipeline, parts, kernels.
+    pub fn documents(&self) -> BTreeMap<&str, &str> {
+        let plan = &self.graph.plan;
+        let places =
+            plan.stages.iter().map(|stage| &stage.place).chain(plan.knobs.iter().map(|knob| &knob.place));
+        let linked = self.graph.stages.iter().filter_map(|stage| stage.linked.as_ref());
+        let kernels = linked.flat_map(|linked| linked.reflected.composed.segments.iter().map(|s| &s.source));
+        let sources = places.map(|place| &place.source).chain(kernels);
+        sources.map(|source| (source.name(), source.text())).collect()
+    }
+
     /// Makes the GPU objects and tells them all facts of the scene.
     pub fn realise(self, gpu: &Gpu, scene: &Scene, clock: Clock, poison: Option<Poison>) -> Result<Frame> {
         let limits = gpu.device.limits();

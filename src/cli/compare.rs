@@ -211,6 +211,8 @@ impl CommonArgs {
             camera: self.camera,
             time: self.time,
             frames: self.frames,
+            repeats: 1,
+            shuffle: None,
             reference: self.reference.clone(),
             reference_sets: self.reference_sets.clone(),
             until: self.until.until(otherwise),

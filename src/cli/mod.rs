@@ -15,6 +15,7 @@ mod render;
 mod run;
 mod savings;
 mod scenes;
+mod sweep;
 
 use crate::library::Library;
 use crate::play;
@@ -42,6 +43,12 @@ enum Command {
     Render(Box<render::RenderArgs>),
     /// Compare pipelines: pictures, errors against the reference, time of each stage; a report.
     Compare(Box<compare::CompareArgs>),
+    /// Compare settings of one pipeline along its knobs and parts.
+    Sweep(Box<sweep::SweepArgs>),
+    /// Join parts of a comparison that were made apart.
+    Merge(sweep::MergeArgs),
+    /// Say what differs between two comparisons.
+    Diff(sweep::DiffArgs),
     /// Profile a pipeline: time, bytes and bandwidth of each stage over many frames; traces.
     Profile(Box<profile::ProfileArgs>),
     /// Check pipelines without rendering: problems, what would run, memory, the graph as a picture.
@@ -207,16 +214,21 @@ pub fn main() -> ExitCode {
     let json = match &cli.command {
         Command::Render(args) => args.json,
         Command::Compare(args) => args.json(),
+        Command::Sweep(args) => args.json(),
+        Command::Diff(args) => args.json,
         Command::Profile(args) => args.json,
         Command::Check(args) => args.json,
         Command::Kernels(args) => args.json,
         Command::Devices(args) => args.json,
         Command::Scenes(args) => args.json,
-        Command::Generate(_) => false,
+        Command::Generate(_) | Command::Merge(_) => false,
     };
     let result = match &cli.command {
         Command::Render(args) => render::run(args),
         Command::Compare(args) => compare::run(args),
+        Command::Sweep(args) => sweep::sweep(args),
+        Command::Merge(args) => sweep::run_merge(args),
+        Command::Diff(args) => sweep::run_diff(args),
         Command::Profile(args) => profile::run(args),
         Command::Check(args) => check::run(args),
         Command::Kernels(args) => kernels::run(args),

@@ -7,13 +7,19 @@
 //! A run meets the reference that simulates the same light: every knob of the reference that the run's pipeline has too, by
 //! its last name, takes the run's value (`diffuse_only`, `ao_distance`), unless it is set for the reference.
 
+mod diff;
 mod files;
+mod merge;
 mod subject;
+mod sweep;
 mod truth;
 
+pub use diff::{Difference, diff};
+pub use merge::merge;
 pub use subject::Subject;
+pub use sweep::{Axis, Order, expand, shard};
 
-use crate::comparison::{Comparison, FILE, Run, SCHEMA, SceneEntry};
+use crate::comparison::{Comparison, FILE, Run, SCHEMA, SceneEntry, Timing};
 use crate::converge::Until;
 use crate::device::{Gpu, LimitSet};
 use crate::library::Library;
@@ -43,6 +49,10 @@ pub struct Plan {
     pub time: f64,
     /// Frames that are timed, after a first one.
     pub frames: u32,
+    /// How often each is run, on a device of its own each time.
+    pub repeats: u32,
+    /// Shuffles the order of running; as listed without.
+    pub shuffle: Option<u64>,
     /// The pipeline that makes references.
     pub reference: String,
     /// Knobs of it.
@@ -136,11 +146,21 @@ impl<'a> Comparing<'a> {
             });
         }
         let mut truths: BTreeMap<String, Truth> = BTreeMap::new();
-        let all = plan.subjects.len();
-        for (number, subject) in plan.subjects.iter().enumerate() {
+        let mut order: Vec<(u32, &Subject)> =
+            (0..plan.repeats).flat_map(|repeat| plan.subjects.iter().map(move |s| (repeat, s))).collect();
+        if let Some(seed) = plan.shuffle {
+            fastrand::Rng::with_seed(seed).shuffle(&mut order);
+        }
+        let all = order.len();
+        // How often each has been met in this order.
+        let mut met: BTreeMap<String, usize> = BTreeMap::new();
+        for (number, (_, subject)) in order.into_iter().enumerate() {
             let name = subject.name();
+            let turn = met.entry(name.clone()).or_default();
+            *turn += 1;
             let same = |run: &Run| run.scene == scene.name && run.name == name;
-            if self.comparison.runs.iter().any(same) {
+            let before = self.comparison.runs.iter().position(same);
+            if before.is_some_and(|index| self.comparison.runs[index].repeats_ms.len() >= *turn) {
                 continue;
             }
             let prepared = subject.prepare(plan, self.library, scene)?;
@@ -159,10 +179,34 @@ impl<'a> Comparing<'a> {
             watch(&Doing::Run { scene: scene.name.clone(), name: name.clone(), number, of: all });
             let done = subject.run(plan, scene, prepared)?;
             let run = truths[&light.name].hold_against(plan, scene, subject, &light.name, done)?;
-            self.comparison.runs.push(run);
+            match before {
+                Some(index) => self.comparison.runs[index].add_repeat(run),
+                None => self.comparison.runs.push(run),
+            }
             self.comparison.write(&plan.folder)?;
         }
         self.comparison.write(&plan.folder)
+    }
+}
+
+impl Run {
+    /// Adds the times of another run of the same; pictures and errors are those of the first.
+    fn add_repeat(&mut self, other: Run) {
+        self.repeats_ms.extend(other.repeats_ms);
+        self.gpu_ms = Timing::of([std::mem::take(&mut self.gpu_ms.samples), other.gpu_ms.samples].concat());
+        for (stage, other) in self.stages.iter_mut().zip(other.stages) {
+            stage.samples_ms.extend(other.samples_ms);
+            let known: Vec<f64> = stage.samples_ms.iter().flatten().copied().collect();
+            (stage.gpu_ms, stage.spread) = (record::quantile(&known, 0.5), record::spread(&known));
+        }
+    }
+}
+
+impl Timing {
+    pub fn of(samples: Vec<Option<f64>>) -> Self {
+        let known: Vec<f64> = samples.iter().flatten().copied().collect();
+        let spread = record::spread(&known);
+        Self { median: record::quantile(&known, 0.5), p10: spread.p10, p90: spread.p90, samples }
     }
 }
 

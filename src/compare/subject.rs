@@ -30,6 +30,8 @@ pub struct Done {
     pub peak_bytes: u64,
     pub lacks: Vec<String>,
     pub pictures: BTreeMap<String, Picture>,
+    /// Name and text.
+    pub documents: BTreeMap<String, String>,
 }
 
 impl Subject {
@@ -73,6 +75,8 @@ impl Subject {
             true => Clock::Wall("asked for by --wall-clock".to_owned()),
             false => calibrate::choose(&gpu)?,
         };
+        let documents = prepared.documents().into_iter();
+        let documents = documents.map(|(name, text)| (name.to_owned(), text.to_owned())).collect();
         let mut frame = prepared.realise(&gpu, scene, clock.clone(), None)?;
         let mut samples =
             Samples { first: Some(frame.run(&gpu, &Changes::All)?.clone()), ..Samples::default() };
@@ -101,6 +105,7 @@ impl Subject {
             samples,
             clock,
             pictures,
+            documents,
         })
     }
 }

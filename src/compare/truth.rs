@@ -6,6 +6,7 @@ use super::subject::{Done, Subject};
 use crate::comparison::{Memory, Reference, Run, StageTime, Timing};
 use crate::converge::{Estimate, Step};
 use crate::device::Gpu;
+use crate::expr::Value;
 use crate::library::Library;
 use crate::measure::{self, Input, Kind, Masks, Measures};
 use crate::picture::Picture;
@@ -28,10 +29,15 @@ pub fn light(plan: &Plan, library: &Library, run: &Prepared) -> Result<Light> {
     let reference = prepare(&request(plan, Vec::new()), library, None)?;
     let last = |path: &str| path.rsplit('.').next().unwrap_or_default().to_owned();
     let mut sets = Vec::new();
-    for knob in reference.graph.plan.knobs.iter().filter(|knob| !knob.set) {
+    // Knobs of its parts are how pictures are shown.
+    for knob in reference.graph.plan.knobs.iter().filter(|knob| !knob.set && !knob.path.contains('.')) {
         let same = run.graph.plan.knobs.iter().find(|own| last(&own.path) == last(&knob.path));
         if let Some(own) = same {
-            sets.push((knob.path.clone(), own.value.to_string()));
+            let value = match &own.value {
+                Value::Text(text) => text.clone(),
+                other => other.to_string(),
+            };
+            sets.push((knob.path.clone(), value));
         }
     }
     let all = sets.iter().chain(&plan.reference_sets).map(|(key, value)| format!("{key}={value}"));
@@ -150,8 +156,10 @@ impl Truth {
         let shown = done.pictures.iter().map(|(name, picture)| (name.as_str(), picture)).collect();
         let into = format!("{}/{}", files::slug(&scene.name), files::slug(&name));
         let pictures = files::write(plan, &into, &shown, &maps)?;
+        let documents = files::documents(plan, &done.documents)?;
         let (clock, clock_reason) = record::clock(&done.clock);
-        let spread = done.samples.frame_spread();
+        let samples: Vec<Option<f64>> = done.samples.frames.iter().map(|t| t.frame).collect();
+        let gpu_ms = Timing::of(samples);
         Ok(Run {
             name,
             scene: scene.name.clone(),
@@ -162,12 +170,8 @@ impl Truth {
             set: subject.coordinates(),
             clock: clock.to_owned(),
             clock_reason,
-            gpu_ms: Timing {
-                median: done.samples.median(|t| t.frame),
-                p10: spread.p10,
-                p90: spread.p90,
-                samples: done.samples.frames.iter().map(|t| t.frame).collect(),
-            },
+            repeats_ms: vec![gpu_ms.median],
+            gpu_ms,
             first_use_ms: done.samples.first.as_ref().and_then(|t| t.frame),
             encode_ms: done.samples.median(|t| Some(t.encode)),
             stages: done.stages.into_iter().map(stage).collect(),
@@ -177,6 +181,7 @@ impl Truth {
             memory: Memory { peak_bytes: done.peak_bytes },
             lacks: done.lacks,
             pictures,
+            documents,
         })
     }
 }

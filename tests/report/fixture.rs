@@ -189,6 +189,8 @@ fn run(folder: &Path, scene: &str, (at, number): (usize, usize), setting: &Setti
     };
     let part = setting.set.iter().find(|(set, _)| *set == "gather");
     Run {
+        repeats_ms: vec![Some(ms)],
+        documents: BTreeMap::new(),
         name,
         scene: scene.to_owned(),
         reference: "full".to_owned(),

@@ -1,0 +1,129 @@
+//! Sweeps: from a pipeline and lists of values to what is compared.
+
+use super::Subject;
+use crate::problem::{Problem, Result};
+
+/// A knob or a role, and the values that it takes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Axis {
+    pub key: String,
+    /// Whether it is a role, whose values are parts.
+    pub role: bool,
+    pub values: Vec<String>,
+}
+
+/// Which of all settings are run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Order {
+    /// Every combination of values.
+    Grid,
+    /// The first value of each axis, and from there one axis at a time.
+    OneAtATime,
+}
+
+/// Settings that a sweep may have.
+const MOST: usize = 10_000;
+
+/// All settings of the axes, on top of `base`; each once.
+pub fn expand(base: &Subject, axes: &[Axis], order: Order) -> Result<Vec<Subject>> {
+    let count = match order {
+        Order::Grid => axes.iter().try_fold(1_usize, |count, axis| count.checked_mul(axis.values.len())),
+        Order::OneAtATime => Some(axes.iter().map(|axis| axis.values.len()).sum()),
+    };
+    if count.is_none_or(|count| count > MOST) {
+        let message = format!("the sweep has more than {MOST} settings");
+        return Err(Problem::input("long-sweep", message)
+            .help("give fewer values, or `--one-at-a-time`")
+            .into());
+    }
+    let mut settings = vec![vec![0; axes.len()]];
+    for (index, axis) in axes.iter().enumerate() {
+        let from = match order {
+            Order::Grid => std::mem::take(&mut settings),
+            Order::OneAtATime => vec![vec![0; axes.len()]],
+        };
+        let skipped = usize::from(order == Order::OneAtATime);
+        for setting in from {
+            settings.extend((skipped..axis.values.len()).map(|value| {
+                let mut setting = setting.clone();
+                setting[index] = value;
+                setting
+            }));
+        }
+    }
+    let subject = |setting: Vec<usize>| {
+        let mut subject = base.clone();
+        for (axis, value) in axes.iter().zip(setting) {
+            let list = if axis.role { &mut subject.parts } else { &mut subject.sets };
+            list.push((axis.key.clone(), axis.values[value].clone()));
+        }
+        subject
+    };
+    Ok(settings.into_iter().map(subject).collect())
+}
+
+/// Every `of`-th of all, from `number` on, which counts from 1: together the shards have each once.
+pub fn shard(all: Vec<Subject>, number: usize, of: usize) -> Vec<Subject> {
+    all.into_iter().skip(number - 1).step_by(of).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    fn axes() -> Vec<Axis> {
+        let axis = |key: &str, role, values: &[&str]| Axis {
+            key: key.to_owned(),
+            role,
+            values: values.iter().map(|v| (*v).to_owned()).collect(),
+        };
+        vec![axis("a", false, &["1", "2", "3"]), axis("r", true, &["x", "y"]), axis("b", false, &["7"])]
+    }
+
+    fn base() -> Subject {
+        Subject { pipeline: "p".to_owned(), parts: Vec::new(), sets: vec![("c".to_owned(), "0".to_owned())] }
+    }
+
+    fn names(subjects: &[Subject]) -> Vec<String> {
+        subjects.iter().map(Subject::name).collect()
+    }
+
+    #[test]
+    fn grids_have_every_combination_once() {
+        let all = expand(&base(), &axes(), Order::Grid).expect("a few");
+        assert_eq!(all.len(), 6);
+        assert_eq!(names(&all).iter().collect::<BTreeSet<_>>().len(), 6);
+        assert!(names(&all).contains(&"p, r=y, c=0, a=3, b=7".to_owned()));
+    }
+
+    #[test]
+    fn one_at_a_time_leaves_the_others_at_their_first() {
+        let all = names(&expand(&base(), &axes(), Order::OneAtATime).expect("a few"));
+        let expected = [
+            "p, r=x, c=0, a=1, b=7",
+            "p, r=x, c=0, a=2, b=7",
+            "p, r=x, c=0, a=3, b=7",
+            "p, r=y, c=0, a=1, b=7",
+        ];
+        assert_eq!(all, expected);
+    }
+
+    #[test]
+    fn shards_share_out_all_of_them() {
+        let all = expand(&base(), &axes(), Order::Grid).expect("a few");
+        let shards: Vec<Subject> = (1..=4).flat_map(|number| shard(all.clone(), number, 4)).collect();
+        let sorted = |subjects: &[Subject]| names(subjects).into_iter().collect::<BTreeSet<_>>();
+        assert_eq!((shards.len(), sorted(&shards)), (6, sorted(&all)));
+    }
+
+    #[test]
+    fn endless_sweeps_are_refused() {
+        let mut axes = axes();
+        for axis in &mut axes {
+            axis.values = (0..100).map(|v| v.to_string()).collect();
+        }
+        assert!(expand(&base(), &axes, Order::Grid).is_err());
+        assert!(expand(&base(), &axes, Order::OneAtATime).is_ok());
+    }
+}
