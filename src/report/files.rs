@@ -21,7 +21,7 @@ impl<'a> Files<'a> {
         Self { folder, size: comparison.size }
     }
 
-    /// The PNG at `path` as a data URI. `whose` names it in messages: "output `color` of run `cones`".
+    /// The PNG at `path` as a data URI. `whose` names it in messages: "output `color` of run `a`".
     pub fn embed(&self, path: &str, whose: &str) -> Result<String> {
         let bytes = fs::read(self.inside(path, whose)?).map_err(|error| unusable(path, whose, error))?;
         let reader = ImageReader::with_format(Cursor::new(&bytes), ImageFormat::Png);

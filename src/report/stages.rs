@@ -66,7 +66,7 @@ fn letter(at: usize) -> String {
     ('A'..='Z').nth(at).map(String::from).unwrap_or_default()
 }
 
-/// `light/voxels[3]` and `light/voxels[4]` are one: indices of loops are left out.
+/// `light/gather[3]` and `light/gather[4]` are one: indices of loops are left out.
 fn without_indices(path: &str) -> String {
     let mut depth = 0;
     let mut name = String::new();
