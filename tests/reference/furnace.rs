@@ -58,7 +58,6 @@ fn a_flawed_furnace_is_noticed() {
         ("paths/trace", "throughput / max(survival, 1e-30)", "throughput"),
         ("paths/trace", "select(1.0 / (1.0 + ratio * ratio), 0.0, own <= 0.0)", "1.0"),
         ("paths/trace", "hit.t * hit.t / max(cosine, 1e-20)", "hit.t * hit.t"),
-        ("lib/emitters", "(0.5 * doubled * abs(cosine))", "(0.5 * doubled)"),
         ("lib/met", "if front || (materials", "if !front || (materials"),
     ];
     for (kernel, from, to) in flaws {
