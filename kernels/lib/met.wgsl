@@ -79,9 +79,11 @@ fn met(hit: Hit, direction: vec3f) -> Met {
         out.normal = outward(mapped_normal(map, smooth_normal, tangent) * side, out.plane, out.normal);
     }
     out.albedo = base;
-    let gloss = metallic_roughness_at(material, uv, vec2f(0.0));
-    out.metallic = gloss.x;
-    out.roughness = gloss.y;
+    @if(!diffuse_only) {
+        let gloss = metallic_roughness_at(material, uv, vec2f(0.0));
+        out.metallic = gloss.x;
+        out.roughness = gloss.y;
+    }
     out.emission = vec3f(0.0);
     out.density = 0.0;
     @if(scene.emissive) {
