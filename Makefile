@@ -1,7 +1,7 @@
 # Both commands are complete on a bare Debian or Ubuntu with Rust, with or without a GPU; scripts/setup.sh says what they
 # install and when.
 #
-#   make demo    build, render the built-in scenes by each pipeline, say where the pictures are
+#   make demo    build, compare pipelines on the built-in scenes, say where the report is
 #   make test    formatting, lints as errors, all tests
 
 # rustup's folder, for shells that have not read its profile yet.

@@ -59,7 +59,8 @@ fn chosen_emitter(choice: f32) -> u32 {
     return select(emitters[index].other, index, at - f32(index) < emitters[index].threshold);
 }
 
-fn arriving_from(e: Emitter, position: vec3f, random: vec2f) -> Arriving {
+fn arriving_from(index: u32, position: vec3f, random: vec2f) -> Arriving {
+    let e = emitters[index];
     var out: Arriving;
     out.density = e.probability;
     out.extentless = true;

@@ -129,36 +129,46 @@ fn transformed_place(place: vec3f, transform: mat3x2f) -> vec3f {
 
 /// Albedo (rgb) and opacity (a).
 fn base_color_at(material: u32, uv: vec4f, footprint: vec2f) -> vec4f {
-    let image = materials[material].base_color_image;
-    var place = image_place(image, uv, footprint);
-    if (image.w & IMAGE_TRANSFORMED) != 0u {
-        place = transformed_place(place, materials[material].base_color_uv);
+    var color = vec4f(materials[material].base_color, 1.0);
+    @if(scene.textured) {
+        let image = materials[material].base_color_image;
+        var place = image_place(image, uv, footprint);
+        if (image.w & IMAGE_TRANSFORMED) != 0u {
+            place = transformed_place(place, materials[material].base_color_uv);
+        }
+        color *= image_at(image, place.xy, place.z);
     }
-    return vec4f(materials[material].base_color, 1.0) * image_at(image, place.xy, place.z);
+    return color;
 }
 
 /// Radiance that leaves the front, W/(sr·m²).
 fn emission_at(material: u32, uv: vec4f, footprint: vec2f) -> vec3f {
-    let factor = materials[material].emission;
-    if all(factor == vec3f(0.0)) {
-        return vec3f(0.0);
+    var emission = materials[material].emission;
+    @if(scene.textured) {
+        if any(emission != vec3f(0.0)) {
+            let image = materials[material].emission_image;
+            var place = image_place(image, uv, footprint);
+            if (image.w & IMAGE_TRANSFORMED) != 0u {
+                place = transformed_place(place, materials[material].emission_uv);
+            }
+            emission *= image_at(image, place.xy, place.z).rgb;
+        }
     }
-    let image = materials[material].emission_image;
-    var place = image_place(image, uv, footprint);
-    if (image.w & IMAGE_TRANSFORMED) != 0u {
-        place = transformed_place(place, materials[material].emission_uv);
-    }
-    return factor * image_at(image, place.xy, place.z).rgb;
+    return emission;
 }
 
 /// Metalness (x) and roughness (y).
 fn metallic_roughness_at(material: u32, uv: vec4f, footprint: vec2f) -> vec2f {
-    let image = materials[material].roughness_image;
-    var place = image_place(image, uv, footprint);
-    if (image.w & IMAGE_TRANSFORMED) != 0u {
-        place = transformed_place(place, materials[material].roughness_uv);
+    var gloss = vec2f(materials[material].metallic, materials[material].roughness);
+    @if(scene.roughness_textured) {
+        let image = materials[material].roughness_image;
+        var place = image_place(image, uv, footprint);
+        if (image.w & IMAGE_TRANSFORMED) != 0u {
+            place = transformed_place(place, materials[material].roughness_uv);
+        }
+        gloss *= image_at(image, place.xy, place.z).bg;
     }
-    return vec2f(materials[material].metallic, materials[material].roughness) * image_at(image, place.xy, place.z).bg;
+    return gloss;
 }
 
 /// Mean normal within the footprint, along tangent, bitangent and normal: the shorter, the more the surface's normals

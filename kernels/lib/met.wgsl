@@ -39,10 +39,10 @@ fn slack_of(a: vec3f, b: vec3f, c: vec3f) -> f32 {
 
 fn met(hit: Hit, direction: vec3f) -> Met {
     let words = array<vec4u, 4>(
-        bvh[4u * hit.record],
-        bvh[4u * hit.record + 1u],
-        bvh[4u * hit.record + 2u],
-        bvh[4u * hit.record + 3u],
+        bvh[2u * hit.record],
+        bvh[2u * hit.record + 1u],
+        bvh[2u * hit.record + 2u],
+        bvh[2u * hit.record + 3u],
     );
     let a = bitcast<vec3f>(words[0].xyz);
     let b = bitcast<vec3f>(words[1].xyz);
@@ -79,9 +79,11 @@ fn met(hit: Hit, direction: vec3f) -> Met {
         out.normal = outward(mapped_normal(map, smooth_normal, tangent) * side, out.plane, out.normal);
     }
     out.albedo = base;
-    let gloss = metallic_roughness_at(material, uv, vec2f(0.0));
-    out.metallic = gloss.x;
-    out.roughness = gloss.y;
+    @if(!diffuse_only) {
+        let gloss = metallic_roughness_at(material, uv, vec2f(0.0));
+        out.metallic = gloss.x;
+        out.roughness = gloss.y;
+    }
     out.emission = vec3f(0.0);
     out.density = 0.0;
     @if(scene.emissive) {

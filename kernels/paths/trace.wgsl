@@ -3,8 +3,8 @@
 //
 // `direct` is visible emission and one scattering, `indirect` the rest. Ambient occlusion is the cosine-weighted share of
 // directions around the shading normal in which nothing lies within `ao_end`; 1 where there is no surface.
-// A thread goes from sample to sample of its pixel, and rays of all kinds are traced at one place, so that threads of a
-// subgroup seldom wait for each other (Novák, Havran, Dachsbacher 2010).
+// A thread goes from sample to sample of its pixel, a surface at a time, whatever path that is of: threads of a subgroup
+// seldom wait for each other (Novák, Havran, Dachsbacher 2010).
 // Cost: for each ray some 64 B a node and triangle met, for each surface some 500 B; writes 4 texels.
 
 import lib/bvh;
@@ -50,12 +50,6 @@ var sample_indirect: texture_storage_2d<rgba32float, write>;
 var sample_albedo: texture_storage_2d<rgba32float, write>;
 /// a: sum of distances along the camera's forward axis, metres.
 var sample_normal: texture_storage_2d<rgba32float, write>;
-
-/// What the ray in flight is for.
-const FOR_NEXT_SAMPLE: u32 = 0u;
-const FOR_PATH: u32 = 1u;
-const FOR_LIGHT: u32 = 2u;
-const FOR_OPENNESS: u32 = 3u;
 
 /// Pairs of random numbers: one for the pixel, one for openness, then these for each surface.
 const DIMENSIONS: u32 = 8u;
@@ -107,17 +101,12 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var normal = vec4f(0.0);
     var rays = 0u;
 
-    var purpose = FOR_NEXT_SAMPLE;
     var ray = PathRay(vec3f(0.0), vec3f(0.0), 0.0);
-    // What is traced after it: towards light, and the path's next piece. `far` is 0 where there is none.
-    var to_light = ray;
-    var onward = ray;
-    var arriving = vec3f(0.0);
     var walk = Walk(vec3f(0.0), 0u, 0.0, 0.0);
     var sample = sample_of(pixel, index);
 
     loop {
-        if purpose == FOR_NEXT_SAMPLE {
+        if ray.far == 0.0 {
             if index == end {
                 break;
             }
@@ -129,47 +118,33 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
             let far = select(FAR_AWAY, depth_to_distance(0.0) - camera.near, camera.parallel > 0.0);
             ray = PathRay(nearest, seen.direction / size_of_direction, far);
             walk = Walk(vec3f(1.0), 0u, 0.0, 1.0 / size_of_direction);
-            purpose = FOR_PATH;
         }
-        let hit = trace(ray.origin, ray.direction, ray.far, purpose != FOR_PATH);
+        let hit = trace(ray.origin, ray.direction, ray.far, false);
         rays += 1u;
-        if purpose == FOR_OPENNESS {
-            openness += select(0.0, 1.0, hit.record == NOTHING);
-        } else if purpose == FOR_LIGHT {
-            if hit.record == NOTHING {
-                if walk.scatterings == 1u {
-                    direct += arriving;
-                } else {
-                    indirect += arriving;
-                }
+        let first = walk.scatterings == 0u;
+        var onward = PathRay(vec3f(0.0), vec3f(0.0), 0.0);
+        // Two rays that only ask whether something is in between: towards light, and into the open.
+        var to_light = onward;
+        var to_open = onward;
+        var arriving = vec3f(0.0);
+        var found = vec3f(0.0);
+        var other_density = 0.0;
+        if hit.record == NOTHING {
+            openness += select(0.0, 1.0, first);
+            @if(scene.environment) {
+                found = environment_at(ray.direction, 0.0);
+                other_density = environment_probability() * environment_density(ray.direction);
             }
+            found *= walk.throughput * select(power_heuristic(walk.density, other_density), 1.0, first);
         } else {
-            to_light.far = 0.0;
-            onward.far = 0.0;
-            var found = vec3f(0.0);
-            var other_density = 0.0;
-            var surface: Met;
-            if hit.record == NOTHING {
-                openness += select(0.0, 1.0, walk.scatterings == 0u);
-                @if(scene.environment) {
-                    found = environment_at(ray.direction, 0.0);
-                    other_density = environment_probability() * environment_density(ray.direction);
-                }
-            } else {
-                surface = met(hit, ray.direction);
-                found = surface.emission;
+            let surface = met(hit, ray.direction);
+            @if(scene.emissive) {
                 let cosine = abs(dot(surface.plane, ray.direction));
                 other_density = surface.density * hit.t * hit.t / max(cosine, 1e-20);
+                found = surface.emission * walk.throughput
+                    * select(power_heuristic(walk.density, other_density), 1.0, first);
             }
-            found *= walk.throughput
-                * select(power_heuristic(walk.density, other_density), 1.0, walk.scatterings == 0u);
-            if walk.scatterings < 2u {
-                direct += found;
-            } else {
-                indirect += found;
-            }
-            let first = walk.scatterings == 0u;
-            if hit.record != NOTHING && (first || walk.scatterings != knobs.max_scatterings) {
+            if first || walk.scatterings != knobs.max_scatterings {
                 let base = 2u + DIMENSIONS * walk.scatterings;
                 let outside = leaving(surface.position, surface.plane, surface.slack);
                 let r = reflecting(
@@ -180,7 +155,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                     surface.metallic,
                     surface.roughness,
                 );
-                let emitter = emitters[chosen_emitter(random_1(sample, base))];
+                let emitter = chosen_emitter(random_1(sample, base));
                 let light = arriving_from(emitter, outside, random_2(sample, base + 1u));
                 if light.density > 0.0 {
                     let value = reflected(r, light.to_light);
@@ -212,32 +187,38 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                     onward = PathRay(outside, direction, FAR_AWAY);
                 }
                 walk.throughput = throughput / max(survival, 1e-30);
-                walk.scatterings += 1u;
                 walk.density = value.density;
                 if first {
                     albedo += vec4f(surface.albedo, 1.0);
                     normal += vec4f(surface.normal, camera.near + hit.t * walk.along);
                     let around = cosine_direction(surface.normal, random_2(sample, 1u));
                     if dot(around, surface.plane) > 0.0 && values.ao_end > 0.0 {
-                        ray = PathRay(outside, around, values.ao_end);
-                        purpose = FOR_OPENNESS;
-                        continue;
+                        to_open = PathRay(outside, around, values.ao_end);
                     }
                 }
             }
         }
-        // The next ray of this path.
-        if to_light.far > 0.0 {
-            ray = to_light;
-            to_light.far = 0.0;
-            purpose = FOR_LIGHT;
-        } else if onward.far > 0.0 {
-            ray = onward;
-            onward.far = 0.0;
-            purpose = FOR_PATH;
-        } else {
-            purpose = FOR_NEXT_SAMPLE;
+        while to_light.far > 0.0 || to_open.far > 0.0 {
+            let light = to_light.far > 0.0;
+            var asked = to_open;
+            if light {
+                asked = to_light;
+            }
+            let free = trace(asked.origin, asked.direction, asked.far, true).record == NOTHING;
+            rays += 1u;
+            if light {
+                arriving = select(vec3f(0.0), arriving, free);
+                to_light.far = 0.0;
+            } else {
+                openness += select(0.0, 1.0, free);
+                to_open.far = 0.0;
+            }
         }
+        // What is met counts for the scatterings so far, what arrives for one more.
+        direct += select(vec3f(0.0), found, walk.scatterings < 2u) + select(vec3f(0.0), arriving, first);
+        indirect += select(found, vec3f(0.0), walk.scatterings < 2u) + select(arriving, vec3f(0.0), first);
+        walk.scatterings += 1u;
+        ray = onward;
     }
     textureStore(sample_direct, pixel, vec4f(direct, openness));
     textureStore(sample_indirect, pixel, vec4f(indirect, 0.0));

@@ -125,14 +125,23 @@ pub fn make(plan: &Plan, library: &Library, json: bool) -> Result<()> {
     }
     let page = report(&comparison, &plan.folder)?;
     if json {
-        let value = serde_json::to_value(&comparison).map_err(|e| {
-            Problem::failure("record", format!("the comparison can't be written as JSON: {e}"))
-        })?;
-        print_json(&value);
+        print_json(&to_json(&comparison)?);
     } else {
         print(&format!("{}report: {}\n", table(&comparison), page.display()));
     }
     Ok(())
+}
+
+/// The comparison, and beside it the reference of its first run: most have only that.
+fn to_json(comparison: &Comparison) -> Result<serde_json::Value> {
+    let failed = |e| Problem::failure("record", format!("the comparison can't be written as JSON: {e}"));
+    let mut value = serde_json::to_value(comparison).map_err(failed)?;
+    let first = comparison.runs.first().and_then(|run| {
+        let scene = comparison.scenes.iter().find(|scene| scene.name == run.scene)?;
+        scene.references.get(&run.reference)
+    });
+    value["reference"] = serde_json::to_value(first).map_err(failed)?;
+    Ok(value)
 }
 
 /// Writes the page into the folder.

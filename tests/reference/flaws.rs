@@ -1,8 +1,7 @@
 //! Kernels that are wrong on purpose.
 
-use std::path::Path;
 use tempfile::TempDir;
-use voxgi::library::Library;
+use voxgi::library::{Library, Shelf};
 
 /// The shipped library with one kernel changed.
 pub struct Flawed {
@@ -12,12 +11,11 @@ pub struct Flawed {
 
 /// `from`, which occurs once in the kernel, becomes `to`.
 pub fn flawed(kernel: &str, from: &str, to: &str) -> Flawed {
-    let file = format!("kernels/{kernel}.wgsl");
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join(&file);
-    let text = std::fs::read_to_string(shipped).expect("a shipped kernel");
+    let shipped = Library::default().find(Shelf::Kernels, kernel).expect("a shipped kernel");
+    let text = shipped.text();
     assert_eq!(text.matches(from).count(), 1, "`{from}` in {kernel}");
     let folder = tempfile::tempdir().expect("a folder");
-    let path = folder.path().join(file);
+    let path = folder.path().join(format!("kernels/{kernel}.wgsl"));
     std::fs::create_dir_all(path.parent().expect("a folder")).expect("a folder for the kernel");
     std::fs::write(path, text.replace(from, to)).expect("the kernel can be written");
     let library = Library::new(vec![folder.path().to_owned()]).expect("a library");

@@ -152,7 +152,7 @@ fn emission_leaves_the_front() {
     let apart = (front.value - back.value).abs();
     assert!(apart.cmple(3.0 * (front.error + back.error)).all() && front.value.x > 0.0, "{front:?} {back:?}");
     for (material, truth) in [(both, INTENSITY), (lamp(INTENSITY.as_vec3()), DVec3::ZERO)] {
-        let above = DVec3::from(MIDDLE.as_dvec3()) + DVec3::Y;
+        let above = MIDDLE.as_dvec3() + DVec3::Y;
         let scene = Stage::new().surface(&rectangle(), material).seen_along(above, -DVec3::Y, 0.2);
         mean(&Shot::of(&scene).samples(128).take(), "color").expect("from above", truth, &[]);
     }

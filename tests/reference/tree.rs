@@ -9,6 +9,10 @@ use voxgi::scene::bvh::{MOST_DEPTH, RECORD, words};
 
 type Corners = [Vec3; 3];
 
+/// Records of a triangle; the root comes after the grid.
+const OF_TRIANGLE: usize = 2;
+const ROOT: usize = 1;
+
 fn scene(triangles: &[Corners]) -> Scene {
     Stage::new().surface(triangles, matt(Vec3::ONE)).seen_from(DVec3::Z, -DVec3::Z)
 }
@@ -19,7 +23,7 @@ struct Tree<'a>(&'a [u32]);
 enum Child {
     Node(usize),
     /// Records of triangles.
-    Leaf(std::ops::Range<usize>),
+    Leaf(Vec<usize>),
 }
 
 impl Tree<'_> {
@@ -28,16 +32,20 @@ impl Tree<'_> {
     }
 
     /// Both children of a node, each with the least and the greatest corner of its box.
-    fn children(&self, node: usize) -> [(Child, [Vec3; 2]); 2] {
+    fn children(&self, node: usize) -> [(Child, [DVec3; 2]); 2] {
+        let [begin, step] =
+            [0, 4].map(|word| DVec3::from_array([0, 1, 2].map(|axis| self.float(word + axis).into())));
         [0, 1].map(|which| {
-            let side = |end: usize| {
-                let axis = |axis: usize| self.float(node * RECORD + 4 * axis + 2 * which + end);
-                Vec3::new(axis(0), axis(1), axis(2))
-            };
-            let word = self.0[node * RECORD + 12 + which];
+            let words = [0, 1, 2].map(|axis| self.0[node * RECORD + 2 * axis + which]);
+            let low = DVec3::from_array(words.map(|word| f64::from(word & 0xffff)));
+            let high = DVec3::from_array(words.map(|word| f64::from(word >> 16)));
+            let word = self.0[node * RECORD + 6 + which];
             let (at, count) = ((word & 0x07ff_ffff) as usize, (word >> 27 & 15) as usize);
-            let leaf = word >> 31 == 1;
-            (if leaf { Child::Leaf(at..at + count) } else { Child::Node(word as usize) }, [side(0), side(1)])
+            let child = match word >> 31 {
+                1 => Child::Leaf((0..count).map(|i| at + OF_TRIANGLE * i).collect()),
+                _ => Child::Node(at),
+            };
+            (child, [low, high].map(|corner| begin + step * corner))
         })
     }
 
@@ -47,7 +55,7 @@ impl Tree<'_> {
     }
 
     /// Index and corners of every triangle, as it is met below `node`. `around`: the boxes above.
-    fn check(&self, node: usize, around: &mut Vec<[Vec3; 2]>, found: &mut Vec<(u32, Corners)>) {
+    fn check(&self, node: usize, around: &mut Vec<[DVec3; 2]>, found: &mut Vec<(u32, Corners)>) {
         assert!(around.len() < MOST_DEPTH, "deeper than a kernel's stack");
         for (child, side) in self.children(node) {
             around.push(side);
@@ -59,8 +67,9 @@ impl Tree<'_> {
                 Child::Leaf(records) => {
                     for record in records {
                         let corners = self.corners(record);
-                        let inside = |[low, high]: &[Vec3; 2]| {
-                            corners.iter().all(|c| c.cmpge(*low).all() && c.cmple(*high).all())
+                        let exact = corners.map(|corner| corner.as_dvec3());
+                        let inside = |[low, high]: &[DVec3; 2]| {
+                            exact.iter().all(|c| c.cmpge(*low).all() && c.cmple(*high).all())
                         };
                         assert!(around.iter().all(inside), "a triangle sticks out of a box above it");
                         found.push((self.0[record * RECORD + 13], corners));
@@ -73,8 +82,8 @@ impl Tree<'_> {
 
     /// The distance to the nearest triangle, in lengths of `direction`, and how many were looked at.
     fn nearest(&self, node: usize, origin: DVec3, direction: DVec3, looked: &mut usize) -> Option<f64> {
-        let enters = |[low, high]: [Vec3; 2]| {
-            let [a, b] = [low, high].map(|corner| (corner.as_dvec3() - origin) / direction);
+        let enters = |[low, high]: [DVec3; 2]| {
+            let [a, b] = [low, high].map(|corner| (corner - origin) / direction);
             // Rays in the plane of a flat box: rounding must not lose it.
             let (begin, end) = (a.min(b).max_element().max(0.0), a.max(b).min_element());
             begin <= end * (1.0 + 1e-9) + 1e-12
@@ -85,7 +94,7 @@ impl Tree<'_> {
                 Child::Node(child) => self.nearest(child, origin, direction, looked),
                 Child::Leaf(records) => {
                     *looked += records.len();
-                    first(records.map(|record| self.corners(record)), origin, direction)
+                    first(records.into_iter().map(|record| self.corners(record)), origin, direction)
                 }
             };
             nearest = [nearest, found].into_iter().flatten().reduce(f64::min);
@@ -113,7 +122,7 @@ fn check(triangles: &[Corners]) {
     let words = words(&scene);
     assert!(words.len() >= RECORD && words.len().is_multiple_of(RECORD));
     let mut found = Vec::new();
-    Tree(&words).check(0, &mut Vec::new(), &mut found);
+    Tree(&words).check(ROOT, &mut Vec::new(), &mut found);
     found.sort_by_key(|(index, _)| *index);
     assert!(found.iter().map(|(index, _)| *index).eq(0..triangles.len() as u32), "each triangle once");
     let center = scene.bounds.center();
@@ -170,7 +179,7 @@ proptest! {
         let origin = eye.as_dvec3() + DVec3::new(0.123, 0.0456, -0.0789);
         for target in at {
             let direction = target.as_dvec3() - origin;
-            let nearest = Tree(&words).nearest(0, origin, direction, &mut 0);
+            let nearest = Tree(&words).nearest(ROOT, origin, direction, &mut 0);
             prop_assert_eq!(nearest, first(placed.clone(), origin, direction));
         }
     }
@@ -195,12 +204,11 @@ fn a_walk_leaves_out_most() {
     let mut looked = 0;
     let origin = DVec3::new(0.2 + 2.0 * 333.0, 0.2, 5.0) - scene.bounds.center();
     let through = |words: &[u32], looked: &mut usize| {
-        Tree(words).nearest(0, origin, DVec3::new(1e-9, 1e-9, -1.0), looked)
+        Tree(words).nearest(ROOT, origin, DVec3::new(1e-9, 1e-9, -1.0), looked)
     };
     assert!(through(&words, &mut looked).is_some_and(|t| (t - 5.0).abs() < 1e-6));
     assert!(looked <= 32, "{looked} looked at");
-    for word in [0, 1, 2, 3] {
-        words[word] = 0f32.to_bits();
-    }
-    assert!(std::panic::catch_unwind(|| Tree(&words).check(0, &mut Vec::new(), &mut Vec::new())).is_err());
+    // Boxes of one point.
+    words[ROOT * RECORD..ROOT * RECORD + 6].fill(0);
+    assert!(std::panic::catch_unwind(|| Tree(&words).check(ROOT, &mut Vec::new(), &mut Vec::new())).is_err());
 }
