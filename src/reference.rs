@@ -1,7 +1,8 @@
 //! References, kept by what they depend on: made once, and resumed where more samples are wanted.
 //!
 //! Each is a folder of the cache, named by a hash of the files of the scene, the camera, the size, the knobs and the
-//! texts of the pipeline, its parts and kernels. In it, `estimate-N.exr` holds the pictures after N samples for each pixel, and `estimate.json`
+//! texts of the pipeline, its parts and kernels. In it, `estimate-N.exr` holds the pictures after N samples for each
+//! pixel, and `estimate.json`
 //! says which is whole. The latter is written last, so that a run that was stopped leaves what there was before.
 
 use crate::converge::{Estimate, Step, Until, VARIANCE, converge};
@@ -64,7 +65,8 @@ impl Cache {
         Ok(Self::at(folder.join("references")))
     }
 
-    /// The reference of a scene by the pipeline that `request` names, good enough for `until`: from the cache, as far as it is
+    /// The reference of a scene by the pipeline that `request` names, good enough for `until`: from the cache, as
+    /// far as it is
     /// there, and the rest made now. `watch` sees how far it is.
     pub fn get(
         &self,

@@ -68,7 +68,8 @@ fn a_flawed_furnace_is_noticed() {
     }
 }
 
-/// Below a wide ceiling at height h nothing lies in the directions that leave it out of reach R: a share (h / R)² of them,
+/// Below a wide ceiling at height h nothing lies in the directions that leave it out of reach R: a share (h / R)² of
+/// them,
 /// weighted by their cosines.
 #[test]
 fn openness_below_a_ceiling() {

@@ -1,4 +1,5 @@
-//! Glossy surfaces against glTF's metallic-roughness model (glTF 2.0, appendix B), written anew in double precision: value by
+//! Glossy surfaces against glTF's metallic-roughness model (glTF 2.0, appendix B), written anew in double precision:
+//! value by
 //! value, lit by a directional light, which has no noise; and summed over all directions, in an even sky.
 //!
 //! One scene has 16 plates in a plane: four roughnesses by four metalnesses, seen by parallel rays.
@@ -209,7 +210,8 @@ fn an_even_sky_shows_all_that_is_reflected() {
             let apart = (found.value - truth).abs();
             assert!(apart.cmple(4.0 * found.error + 1e-4).all(), "{at:?} {view}: {found:?}, to be {truth:?}");
             assert!(found.error.max_element() < 0.02);
-            // No metal gives more than arrives. A coated base does at grazing angles, by the model's own rule: what its coat lets
+            // No metal gives more than arrives. A coated base does at grazing angles, by the model's own rule: what
+            // its coat lets
             // through is told from one half vector for the way in and the way out.
             let most = if model.metallic == 1.0 { 1.0 } else { 1.02 };
             assert!(truth.max_element() <= most, "{truth:?}");

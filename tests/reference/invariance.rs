@@ -1,7 +1,9 @@
 //! The Cornell box 10 km away, a thousand times as large, or mirrored, is the same picture.
 //!
-//! A thousand times as large, only the rounding of f32 differs: the samples are the same, and few paths part. 10 km away f32
-//! places the camera and the middle of the scene within 1 mm, of half a metre: rims move by some hundredths of a pixel, and
+//! A thousand times as large, only the rounding of f32 differs: the samples are the same, and few paths part. 10 km
+//! away f32
+//! places the camera and the middle of the scene within 1 mm, of half a metre: rims move by some hundredths of a
+//! pixel, and
 //! with them single pixels; means of quarters of the picture by less than 1 %.
 
 use super::files::Studio;

@@ -1,4 +1,5 @@
-//! References are made once, found again, and gone on from; what they depend on tells them apart; what is broken is made anew.
+//! References are made once, found again, and gone on from; what they depend on tells them apart; what is broken is
+//! made anew.
 
 use super::files::Studio;
 use super::flaws::flawed;
@@ -72,7 +73,8 @@ fn a_reference_is_made_once() {
     assert_eq!((fewer.cached_samples, batches), (32, 0));
 }
 
-/// More samples are those after the ones that are there: two runs one after another are one, in its mean up to rounding and in
+/// More samples are those after the ones that are there: two runs one after another are one, in its mean up to
+/// rounding and in
 /// its variance as far as that of parts is one.
 #[test]
 fn a_reference_is_gone_on_from() {

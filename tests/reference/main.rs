@@ -1,4 +1,5 @@
-//! Is the pipeline `reference` the truth? Its means against closed forms and quadratures in double precision, within three
+//! Is the pipeline `reference` the truth? Its means against closed forms and quadratures in double precision, within
+//! three
 //! of its own standard errors, and these against how runs with other seeds differ; what else it promises, too: the
 //! hierarchy that its rays go through, the list of emitters, the cache of what it made.
 //!

@@ -68,7 +68,8 @@ impl<'a> Shot<'a> {
     }
 }
 
-/// Rays begin above a triangle by 1.5·10⁻⁵ of its size, which changes distances to lights; relative. Single precision of some ten
+/// Rays begin above a triangle by 1.5·10⁻⁵ of its size, which changes distances to lights; relative. Single
+/// precision of some ten
 /// products and a sum of hundreds is less.
 const ROUNDING: f64 = 1e-4;
 
@@ -106,7 +107,8 @@ pub fn mean(estimate: &Estimate, output: &str) -> Mean {
     mean_where(estimate, output, |_, _| true)
 }
 
-/// The mean of an output over the pixels that `chosen` wants, by column and row. Pixels are independent, so that variances
+/// The mean of an output over the pixels that `chosen` wants, by column and row. Pixels are independent, so that
+/// variances
 /// add up. Outputs of one channel count as grey.
 pub fn mean_where(estimate: &Estimate, output: &str, chosen: impl Fn(u32, u32) -> bool) -> Mean {
     let (_, picture, variance) = estimate.means().find(|(name, ..)| *name == output).expect("the output");

@@ -1,4 +1,5 @@
-//! Light from the environment: a Lambert surface in it, and what the camera sees of it, against sums over all directions in
+//! Light from the environment: a Lambert surface in it, and what the camera sees of it, against sums over all
+//! directions in
 //! double precision.
 
 use super::flaws::flawed;

@@ -1,8 +1,10 @@
-//! A sphere of albedo ½ around a point light of π W/sr, its radius 1 m: the light alone makes every point ½ bright, each
+//! A sphere of albedo ½ around a point light of π W/sr, its radius 1 m: the light alone makes every point ½ bright,
+//! each
 //! scattering adds half of what was there, all of it is exactly 1.
 //!
 //! The sphere is 8192 flat triangles whose area is 4π: then the mean over area of all light that arrives is that of the
-//! sphere, for what 4π · π W the light sends is absorbed, half at a time. Triangles' middles are 0.1 % nearer to the light
+//! sphere, for what 4π · π W the light sends is absorbed, half at a time. Triangles' middles are 0.1 % nearer to the
+//! light
 //! than their corners, which bounds how far a mean over the picture, an even choice of directions, is off.
 
 use super::shot::{Shot, mean};

@@ -84,7 +84,8 @@ impl Stage {
         self
     }
 
-    /// Two triangles of a rectangle with an image of two texels side by side, the scene's only one; tangents go to the right.
+    /// Two triangles of a rectangle with an image of two texels side by side, the scene's only one; tangents go to
+    /// the right.
     pub fn imaged(self, rectangle: &[[Vec3; 3]; 2], material: Material, texels: [[u8; 4]; 2]) -> Self {
         let first = self.0.vertices.len();
         let Self(mut scene) = self.surface(rectangle, material);

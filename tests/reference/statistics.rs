@@ -1,4 +1,5 @@
-//! Are the standard errors right? Runs with other seeds differ as the variances say, over pixels and as whole pictures; errors
+//! Are the standard errors right? Runs with other seeds differ as the variances say, over pixels and as whole
+//! pictures; errors
 //! fall with the number of samples; the same seed gives the same bits, however the samples are spread over frames.
 //!
 //! On the Cornell box in few pixels, and where tails would take too many runs to tell, on a room with a large lamp.
@@ -19,7 +20,8 @@ fn cornell() -> Scene {
     scene::load(&path).expect("a scene of this repository")
 }
 
-/// Grey walls of 2 m, and a lamp of 1.2 m below the ceiling, out of sight: no sample is much brighter than others, and no pixel
+/// Grey walls of 2 m, and a lamp of 1.2 m below the ceiling, out of sight: no sample is much brighter than others,
+/// and no pixel
 /// has most of the noise, as it has at the rim of what is bright.
 fn tame() -> Scene {
     let lamp = quad(Vec3::Y * 0.8, Vec3::X * 0.6, Vec3::Z * 0.6);
@@ -157,7 +159,8 @@ fn apart(one: &Estimate, two: &Estimate, output: &str) -> f64 {
     f64::from(most / brightest)
 }
 
-/// Bands of rows draw the same samples in the same order. Frames of fewer samples draw the same in sums of their own, whose
+/// Bands of rows draw the same samples in the same order. Frames of fewer samples draw the same in sums of their
+/// own, whose
 /// rounding differs.
 #[test]
 fn samples_do_not_depend_on_how_frames_share_them() {

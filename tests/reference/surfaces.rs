@@ -1,6 +1,7 @@
 //! Images on surfaces: holes for rays of all kinds, texels at their full size, normals.
 //!
-//! Everything lies on a sheet of 2 m a side with an image of 2 × 1 texels, not interpolated: a left half and a right half.
+//! Everything lies on a sheet of 2 m a side with an image of 2 × 1 texels, not interpolated: a left half and a right
+//! half.
 
 use super::shot::{Mean, Shot, mean_where};
 use super::stage::{Stage, directional, lamp, matt, quad};

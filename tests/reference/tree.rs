@@ -1,4 +1,5 @@
-//! The hierarchy that rays go through, read as its documentation says: every triangle once, inside the boxes above it, never
+//! The hierarchy that rays go through, read as its documentation says: every triangle once, inside the boxes above
+//! it, never
 //! deeper than a kernel's stack; and a walk through it finds what a look at every triangle finds.
 
 use super::stage::{Stage, matt};

@@ -1,4 +1,5 @@
-//! The list of emitters: all that gives light and nothing else, with probabilities that sum to 1, and a table that gives them;
+//! The list of emitters: all that gives light and nothing else, with probabilities that sum to 1, and a table that
+//! gives them;
 //! the densities in the hierarchy belong to them.
 
 use super::stage::{Stage, directional, lamp, matt, point, quad, spot};
