@@ -12,7 +12,8 @@ use crate::problem::{Problem, Result};
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
-const VARIANCE: &str = "_variance";
+/// Ends the name of an output that is the variance of another.
+pub const VARIANCE: &str = "_variance";
 
 /// When to stop; whichever comes first. At least two batches are run, since one has no variance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

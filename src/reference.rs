@@ -1,10 +1,10 @@
 //! References, kept by what they depend on: made once, and resumed where more samples are wanted.
 //!
-//! Each is a folder of the cache, named by a hash of the files of the scene, the camera, the size, the knobs and every
-//! program of the pipeline. In it, `estimate-N.exr` holds the pictures after N samples for each pixel, and `estimate.json`
+//! Each is a folder of the cache, named by a hash of the files of the scene, the camera, the size, the knobs and the
+//! texts of the pipeline, its parts and kernels. In it, `estimate-N.exr` holds the pictures after N samples for each pixel, and `estimate.json`
 //! says which is whole. The latter is written last, so that a run that was stopped leaves what there was before.
 
-use crate::converge::{Estimate, Step, Until, converge};
+use crate::converge::{Estimate, Step, Until, VARIANCE, converge};
 use crate::device::Gpu;
 use crate::frame::Clock;
 use crate::library::Library;
@@ -81,7 +81,7 @@ impl Cache {
         let knobs: BTreeMap<String, serde_json::Value> =
             knobs.map(|k| (k.path.clone(), crate::record::value(&k.value))).collect();
         let folder = self.folder.join(key(scene, &prepared, &progress)?);
-        let before = read(&folder);
+        let before = read(&folder).filter(|estimate| fits(estimate, &prepared, &progress));
         let cached_samples = before.as_ref().map_or(0, |estimate| estimate.samples);
         if let Some(before) = &before
             && is_enough(before, until)
@@ -111,6 +111,15 @@ fn progress(prepared: &Prepared) -> Result<PlannedProgress> {
         Problem::input("no-progress", format!("`{}` does not get better from frame to frame", plan.name))
             .help("a reference is a pipeline that says `progress`, such as `reference`")
     })?)
+}
+
+/// Whether an estimate has all that the pipeline gives, and whole batches of it.
+fn fits(estimate: &Estimate, prepared: &Prepared, progress: &PlannedProgress) -> bool {
+    let has = |name: &str| estimate.pictures.contains_key(name);
+    let outputs = &prepared.graph.plan.outputs;
+    let all = outputs.iter().filter_map(|(name, ..)| Some((name, name.strip_suffix(VARIANCE)?)));
+    let whole = estimate.samples > 0 && estimate.samples.is_multiple_of(progress.batch);
+    whole && { all }.all(|(variance, mean)| has(variance) && has(mean))
 }
 
 fn is_enough(estimate: &Estimate, until: &Until) -> bool {
@@ -147,11 +156,9 @@ fn key(scene: &Scene, prepared: &Prepared, progress: &PlannedProgress) -> Result
         add(knob.path.as_bytes());
         add(knob.value.to_string().as_bytes());
     }
-    for stage in prepared.graph.stages.iter().filter(|stage| stage.off.is_none()) {
-        add(stage.path.as_bytes());
-        if let Some(linked) = &stage.linked {
-            add(linked.reflected.composed.text.as_bytes());
-        }
+    // Not kernels alone: what they are told is worked out in the pipeline.
+    for text in prepared.documents().values() {
+        add(text.as_bytes());
     }
     Ok(hash.finalize().to_hex()[..32].to_owned())
 }

@@ -5,8 +5,8 @@
 // slip through between neighbours.
 // Cost: 32 B for each node, 36 B for each triangle; a stack of 48 words.
 
+@if(scene.masked) import lib/holes;
 import lib/scene;
-import lib/material;
 
 /// Two elements to a record.
 var<storage, read> bvh: array<vec4u>;
@@ -59,13 +59,7 @@ fn inverse_of(direction: vec3f) -> vec3f {
 fn open_at(record: u32, weights: vec2f) -> bool {
     let ids = vec3u(bvh[2u * record].w, bvh[2u * record + 1u].w, bvh[2u * record + 2u].w);
     let material = instances[bvh[2u * record + 3u].x].material;
-    let w = vec3f(1.0 - weights.x - weights.y, weights);
-    let uv = w.x * corner_uv(ids.x) + w.y * corner_uv(ids.y) + w.z * corner_uv(ids.z);
-    var alpha = base_color_at(material, uv, vec2f(0.0)).a;
-    @if(scene.vertex_colors) {
-        alpha *= w.x * corner_color(ids.x).a + w.y * corner_color(ids.y).a + w.z * corner_color(ids.z).a;
-    }
-    return is_hole(material, alpha);
+    return hole_at(material, ids, vec3f(1.0 - weights.x - weights.y, weights));
 }
 
 /// What a ray meets before `far`: the nearest triangle, or if `early` is set the first that is found.

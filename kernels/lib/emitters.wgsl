@@ -2,10 +2,12 @@
 //
 // Positions are metres from `scene.center`. The engine gives the probabilities and the alias table. Spot cones:
 // KHR_lights_punctual's formula; `range` is ignored.
-// Cost: an emitter 80 B or two; of a triangle with a texture 3 vertices and 4 texels; of the environment some 20 elements
+// Cost: an emitter 80 B or two; of a triangle with a texture 3 vertices and 4 texels, with holes
+// twice that; of the environment some 20 elements
 // to find a texel by halving, and 8 for its radiance.
 
 @if(scene.environment) import lib/environment_choice;
+@if(scene.masked) import lib/holes;
 import lib/material;
 import lib/math;
 import lib/random;
@@ -118,8 +120,14 @@ fn from_triangle(e: Emitter, position: vec3f, random: vec2f) -> Arriving {
     if !front || cosine == 0.0 {
         return out;
     }
-    out.density = e.probability * squared / (0.5 * doubled * abs(cosine));
     let ids = e.vertices;
+    @if(scene.masked) {
+        // A ray would pass there, and meet no emission.
+        if materials[material].alpha_cutoff > 0.0 && hole_at(material, ids, w) {
+            return out;
+        }
+    }
+    out.density = e.probability * squared / (0.5 * doubled * abs(cosine));
     out.light = emission_at(
         material,
         w.x * corner_uv(ids.x) + w.y * corner_uv(ids.y) + w.z * corner_uv(ids.z),

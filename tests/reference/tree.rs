@@ -1,0 +1,214 @@
+//! The hierarchy that rays go through, read as its documentation says: every triangle once, inside the boxes above it, never
+//! deeper than a kernel's stack; and a walk through it finds what a look at every triangle finds.
+
+use super::stage::{Stage, matt};
+use glam::{DVec3, Vec3};
+use proptest::prelude::*;
+use voxgi::scene::Scene;
+use voxgi::scene::bvh::{MOST_DEPTH, RECORD, words};
+
+type Corners = [Vec3; 3];
+
+/// Records of a triangle; the root comes after the grid.
+const OF_TRIANGLE: usize = 2;
+const ROOT: usize = 1;
+
+fn scene(triangles: &[Corners]) -> Scene {
+    Stage::new().surface(triangles, matt(Vec3::ONE)).seen_from(DVec3::Z, -DVec3::Z)
+}
+
+struct Tree<'a>(&'a [u32]);
+
+/// Where a child is.
+enum Child {
+    Node(usize),
+    /// Records of triangles.
+    Leaf(Vec<usize>),
+}
+
+impl Tree<'_> {
+    fn float(&self, word: usize) -> f32 {
+        f32::from_bits(self.0[word])
+    }
+
+    /// Both children of a node, each with the least and the greatest corner of its box.
+    fn children(&self, node: usize) -> [(Child, [DVec3; 2]); 2] {
+        let [begin, step] =
+            [0, 4].map(|word| DVec3::from_array([0, 1, 2].map(|axis| self.float(word + axis).into())));
+        [0, 1].map(|which| {
+            let words = [0, 1, 2].map(|axis| self.0[node * RECORD + 2 * axis + which]);
+            let low = DVec3::from_array(words.map(|word| f64::from(word & 0xffff)));
+            let high = DVec3::from_array(words.map(|word| f64::from(word >> 16)));
+            let word = self.0[node * RECORD + 6 + which];
+            let (at, count) = ((word & 0x07ff_ffff) as usize, (word >> 27 & 15) as usize);
+            let child = match word >> 31 {
+                1 => Child::Leaf((0..count).map(|i| at + OF_TRIANGLE * i).collect()),
+                _ => Child::Node(at),
+            };
+            (child, [low, high].map(|corner| begin + step * corner))
+        })
+    }
+
+    fn corners(&self, record: usize) -> Corners {
+        let at = record * RECORD;
+        [0, 4, 8].map(|word| Vec3::from_array([0, 1, 2].map(|axis| self.float(at + word + axis))))
+    }
+
+    /// Index and corners of every triangle, as it is met below `node`. `around`: the boxes above.
+    fn check(&self, node: usize, around: &mut Vec<[DVec3; 2]>, found: &mut Vec<(u32, Corners)>) {
+        assert!(around.len() < MOST_DEPTH, "deeper than a kernel's stack");
+        for (child, side) in self.children(node) {
+            around.push(side);
+            match child {
+                Child::Node(child) => {
+                    assert!(child > node, "a node comes before its children");
+                    self.check(child, around, found);
+                }
+                Child::Leaf(records) => {
+                    for record in records {
+                        let corners = self.corners(record);
+                        let exact = corners.map(|corner| corner.as_dvec3());
+                        let inside = |[low, high]: &[DVec3; 2]| {
+                            exact.iter().all(|c| c.cmpge(*low).all() && c.cmple(*high).all())
+                        };
+                        assert!(around.iter().all(inside), "a triangle sticks out of a box above it");
+                        found.push((self.0[record * RECORD + 13], corners));
+                    }
+                }
+            }
+            around.pop();
+        }
+    }
+
+    /// The distance to the nearest triangle, in lengths of `direction`, and how many were looked at.
+    fn nearest(&self, node: usize, origin: DVec3, direction: DVec3, looked: &mut usize) -> Option<f64> {
+        let enters = |[low, high]: [DVec3; 2]| {
+            let [a, b] = [low, high].map(|corner| (corner - origin) / direction);
+            // Rays in the plane of a flat box: rounding must not lose it.
+            let (begin, end) = (a.min(b).max_element().max(0.0), a.max(b).min_element());
+            begin <= end * (1.0 + 1e-9) + 1e-12
+        };
+        let mut nearest: Option<f64> = None;
+        for (child, _) in self.children(node).into_iter().filter(|(_, side)| enters(*side)) {
+            let found = match child {
+                Child::Node(child) => self.nearest(child, origin, direction, looked),
+                Child::Leaf(records) => {
+                    *looked += records.len();
+                    first(records.into_iter().map(|record| self.corners(record)), origin, direction)
+                }
+            };
+            nearest = [nearest, found].into_iter().flatten().reduce(f64::min);
+        }
+        nearest
+    }
+}
+
+/// The nearest of these triangles, by volumes: a ray passes inside all edges if its volumes with them have one sign.
+fn first(triangles: impl Iterator<Item = Corners>, origin: DVec3, direction: DVec3) -> Option<f64> {
+    let hit = |corners: Corners| {
+        let [a, b, c] = corners.map(|corner| corner.as_dvec3() - origin);
+        let volumes = [b.cross(c), c.cross(a), a.cross(b)].map(|edge| edge.dot(direction));
+        let one_side = volumes.iter().all(|v| *v >= 0.0) || volumes.iter().all(|v| *v <= 0.0);
+        let normal = (b - a).cross(c - a);
+        let t = normal.dot(a) / normal.dot(direction);
+        (one_side && t.is_finite() && t > 0.0).then_some(t)
+    };
+    triangles.filter_map(hit).reduce(f64::min)
+}
+
+/// All that must hold of the hierarchy over these triangles.
+fn check(triangles: &[Corners]) {
+    let scene = scene(triangles);
+    let words = words(&scene);
+    assert!(words.len() >= RECORD && words.len().is_multiple_of(RECORD));
+    let mut found = Vec::new();
+    Tree(&words).check(ROOT, &mut Vec::new(), &mut found);
+    found.sort_by_key(|(index, _)| *index);
+    assert!(found.iter().map(|(index, _)| *index).eq(0..triangles.len() as u32), "each triangle once");
+    let center = scene.bounds.center();
+    for ((_, found), corners) in found.iter().zip(triangles) {
+        let placed = corners.map(|corner| (corner.as_dvec3() - center).as_vec3());
+        assert_eq!(*found, placed, "metres from the middle of the bounds");
+    }
+}
+
+fn coordinate() -> impl Strategy<Value = f32> {
+    // Whole numbers make coplanar and degenerate triangles, and boxes without thickness.
+    prop_oneof![2 => -10f32..10.0, 1 => (-3i8..4).prop_map(f32::from)]
+}
+
+fn corner() -> impl Strategy<Value = Vec3> {
+    [coordinate(), coordinate(), coordinate()].prop_map(Vec3::from)
+}
+
+/// Triangles of all sorts, some with corners that coincide, some several times.
+fn soup() -> impl Strategy<Value = Vec<Corners>> {
+    let triangle = prop_oneof![
+        5 => [corner(), corner(), corner()],
+        1 => corner().prop_map(|c| [c; 3]),
+        1 => [corner(), corner()].prop_map(|[a, b]| [a, b, b]),
+    ];
+    let several = (triangle, prop_oneof![9 => Just(1usize), 1 => 2..20usize])
+        .prop_map(|(triangle, times)| vec![triangle; times]);
+    prop::collection::vec(several, 0..60).prop_map(|lists| lists.concat())
+}
+
+proptest! {
+    #[test]
+    fn soups_are_held_whole(triangles in soup()) {
+        check(&triangles);
+    }
+
+    /// Each twice as far away and as large as the one before: trees over them lean to one side.
+    #[test]
+    fn chains_are_not_too_deep(count in 1usize..120, copies in 1usize..4, axis in corner()) {
+        let link = |i: usize| {
+            let scale = (i as f32 - 60.0).exp2();
+            let corners = [axis, axis + Vec3::X, axis + Vec3::Y];
+            [corners.map(|corner| corner * scale * 0.05)].repeat(copies)
+        };
+        check(&(0..count).flat_map(link).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_walk_finds_the_nearest(triangles in soup(), eye in corner(), at in prop::collection::vec(corner(), 30)) {
+        let scene = scene(&triangles);
+        let words = words(&scene);
+        let center = scene.bounds.center();
+        let placed = triangles.iter().map(|t| t.map(|corner| (corner.as_dvec3() - center).as_vec3()));
+        let origin = eye.as_dvec3() + DVec3::new(0.123, 0.0456, -0.0789);
+        for target in at {
+            let direction = target.as_dvec3() - origin;
+            let nearest = Tree(&words).nearest(ROOT, origin, direction, &mut 0);
+            prop_assert_eq!(nearest, first(placed.clone(), origin, direction));
+        }
+    }
+}
+
+#[test]
+fn few_triangles_and_many_alike() {
+    let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    for count in [0, 1, 2, 8, 9, 15, 16, 17, 1000] {
+        check(&vec![triangle; count]);
+    }
+}
+
+/// A hierarchy is of use: of a thousand triangles in a row a ray meets few. And a box that is too small is noticed.
+#[test]
+fn a_walk_leaves_out_most() {
+    let row: Vec<Corners> = (0..1000)
+        .map(|i| [Vec3::ZERO, Vec3::X, Vec3::Y].map(|corner| corner + Vec3::X * 2.0 * i as f32))
+        .collect();
+    let scene = scene(&row);
+    let mut words = words(&scene);
+    let mut looked = 0;
+    let origin = DVec3::new(0.2 + 2.0 * 333.0, 0.2, 5.0) - scene.bounds.center();
+    let through = |words: &[u32], looked: &mut usize| {
+        Tree(words).nearest(ROOT, origin, DVec3::new(1e-9, 1e-9, -1.0), looked)
+    };
+    assert!(through(&words, &mut looked).is_some_and(|t| (t - 5.0).abs() < 1e-6));
+    assert!(looked <= 32, "{looked} looked at");
+    // Boxes of one point.
+    words[ROOT * RECORD..ROOT * RECORD + 6].fill(0);
+    assert!(std::panic::catch_unwind(|| Tree(&words).check(ROOT, &mut Vec::new(), &mut Vec::new())).is_err());
+}
