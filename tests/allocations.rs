@@ -98,7 +98,7 @@ fn alone() -> impl Drop {
 }
 
 fn small<'a>(scene: &'a voxgi::scene::Scene, pipeline: &str) -> Job<'a> {
-    Job::new(scene, pipeline, [16, 16]).set("resolution", "16").set("light_map_size", "16")
+    Job::new(scene, pipeline, [16, 16]).small("16", "16")
 }
 
 #[test]

@@ -70,9 +70,11 @@ fn trace(origin: vec3f, direction: vec3f, far: f32, early: bool) -> Hit {
     var height = 0u;
     // The root is a node, after the grid.
     var next = 1u;
-    loop {
+    // No record is visited twice.
+    let records = arrayLength(&bvh) / 2u;
+    for (var leaf = 0u; leaf < records; leaf++) {
         // Down to a leaf.
-        while (next & BVH_LEAF) == 0u {
+        for (var node = 0u; node < records && (next & BVH_LEAF) == 0u; node++) {
             let rest = bvh[2u * next + 1u];
             let spans = children_of(bvh[2u * next], rest.xy, ray, hit.t);
             let children = rest.zw;

@@ -10,7 +10,8 @@ import lib/math;
 fn environment_find(begin: u32, count: u32, within: bool, choice: f32) -> u32 {
     var low = 0u;
     var high = count - 1u;
-    while low < high {
+    // As many halvings as the widest picture takes.
+    for (var step = 0u; step < 16u && low < high; step++) {
         let middle = (low + high) / 2u;
         if environment_running(begin + middle, within) > choice {
             high = middle;

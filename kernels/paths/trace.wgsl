@@ -54,6 +54,8 @@ var sample_normal: texture_storage_2d<rgba32float, write>;
 /// Pairs of random numbers: one for the pixel, one for openness, then these for each surface.
 const DIMENSIONS: u32 = 8u;
 const ROULETTE_FROM: u32 = 3u;
+/// Of a path, on average over a frame's samples: a bound that the roulette never lets it come near.
+const MOST_SURFACES: u32 = 8192u;
 
 struct PathRay {
     origin: vec3f,
@@ -105,7 +107,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     var walk = Walk(vec3f(0.0), 0u, 0.0, 0.0);
     var sample = sample_of(pixel, index);
 
-    loop {
+    for (var step = 0u; step < MOST_SURFACES * values.round_samples; step++) {
         if ray.far == 0.0 {
             if index == end {
                 break;
@@ -198,7 +200,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
                 }
             }
         }
-        while to_light.far > 0.0 || to_open.far > 0.0 {
+        for (var asking = 0u; asking < 2u && (to_light.far > 0.0 || to_open.far > 0.0); asking++) {
             let light = to_light.far > 0.0;
             var asked = to_open;
             if light {

@@ -56,7 +56,10 @@ fn histories_change_places_each_frame() {
 fn still_voxels_are_kept_under_a_moving_camera() {
     let scene = scene("cornell-box");
     for pipeline in shipped() {
-        let job = Job::new(&scene, &pipeline, [32, 32]).set("resolution", "16");
+        let job = Job::new(&scene, &pipeline, [32, 32]).small("16", "16");
+        if job.adds_up() {
+            continue; // Every frame is another.
+        }
         let kept = job.clone().keep(&[Cause::Camera]);
         let mut run = kept.start(gpu()).expect("a run");
         let mut samples = Samples::default();

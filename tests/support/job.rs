@@ -67,6 +67,26 @@ impl<'a> Job<'a> {
         self
     }
 
+    /// Sets a knob where the pipeline has it.
+    pub fn set_where_known(self, knob: &str, value: &str) -> Self {
+        let set = self.clone().set(knob, value);
+        let unknown = |problems: Problems| problems.iter().any(|p| p.code == "unknown-knob");
+        if set.prepare().is_err_and(unknown) { self } else { set }
+    }
+
+    /// So small that a software driver has it in no time, whatever pipeline it is.
+    pub fn small(self, resolution: &str, light_map_size: &str) -> Self {
+        let of_voxels = [("resolution", resolution), ("light_map_size", light_map_size)];
+        let of_paths = [("batch", "4"), ("samples_per_frame", "1")];
+        let all = of_voxels.into_iter().chain(of_paths);
+        all.fold(self, |job, (knob, value)| job.set_where_known(knob, value))
+    }
+
+    /// Whether frames add to those before, so that pictures differ from frame to frame.
+    pub fn adds_up(&self) -> bool {
+        self.prepare().is_ok_and(|prepared| prepared.graph.plan.progress.is_some())
+    }
+
     /// Keeps what depends on none of `causes`, which are what changes between frames.
     pub fn keep(mut self, causes: &[Cause]) -> Self {
         self.request.keep = true;

@@ -8,6 +8,8 @@ use std::collections::BTreeMap;
 
 fn run(set: &[(&str, &str)], ms: f64, relmse: f64) -> Run {
     Run {
+        repeats_ms: vec![Some(ms)],
+        documents: BTreeMap::new(),
         name: format!("{set:?}"),
         scene: "box".to_owned(),
         reference: "full".to_owned(),
