@@ -32,6 +32,11 @@ impl Job<'_> {
         run.unwrap_or_else(|problems| panic!("{}: {}", self.request.pipeline, messages(&problems)))
     }
 
+    /// Whether frames add to those before, so that pictures differ from frame to frame.
+    pub fn adds_up(&self) -> bool {
+        self.prepare().is_ok_and(|prepared| prepared.graph.plan.progress.is_some())
+    }
+
     /// The same job in every way that must not show, each with a name.
     pub fn ways(&self) -> Vec<(&'static str, Self)> {
         let way = |change: &dyn Fn(&mut Self)| {

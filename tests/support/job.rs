@@ -82,11 +82,6 @@ impl<'a> Job<'a> {
         all.fold(self, |job, (knob, value)| job.set_where_known(knob, value))
     }
 
-    /// Whether frames add to those before, so that pictures differ from frame to frame.
-    pub fn adds_up(&self) -> bool {
-        self.prepare().is_ok_and(|prepared| prepared.graph.plan.progress.is_some())
-    }
-
     /// Keeps what depends on none of `causes`, which are what changes between frames.
     pub fn keep(mut self, causes: &[Cause]) -> Self {
         self.request.keep = true;
