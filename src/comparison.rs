@@ -58,7 +58,7 @@ pub struct Reference {
     pub seconds: f64,
     /// Samples that were in the cache already.
     pub cached_samples: u64,
-    /// By output: what its own variance amounts to as relMSE. A run's error below that can't be told from 0.
+    /// By output: what its own variance amounts to as relMSE. A run's error up to twice that can't be told from 0.
     pub noise: BTreeMap<String, f64>,
     /// Mean of each output, over all pixels and channels.
     pub mean: BTreeMap<String, f64>,
@@ -106,7 +106,7 @@ pub struct Run {
     pub errors: BTreeMap<String, BTreeMap<String, f64>>,
     /// Mask → output → measure → value, over the pixels of the mask alone.
     pub masked: BTreeMap<String, BTreeMap<String, BTreeMap<String, f64>>>,
-    /// Outputs whose relMSE is below the reference's own noise.
+    /// Outputs whose relMSE can't be told from the reference's own noise: [`crate::measure::within_noise`].
     pub within_noise: Vec<String>,
     pub memory: Memory,
     /// What the scene calls for and is not done, one sentence each.

@@ -1,8 +1,8 @@
 // Rays against the scene's triangles, through the hierarchy that the engine builds; nearer child first.
 //
-// Positions are metres from `scene.center`. Records of 32 B, as the engine's `scene::bvh` documents them: a grid, inner nodes
-// with boxes in 16 bits, triangles of two records. Triangles: Möller and Trumbore 1997, widened by a millionth of their edges, so that rays do not
-// slip through between neighbours.
+// Positions are metres from `scene.center`. Records of 32 B, as the engine's `scene::bvh` documents them: a grid, inner
+// nodes with boxes in 16 bits, triangles of two records. Triangles: Möller and Trumbore 1997, widened by a millionth of
+// their edges, so that rays do not slip through between neighbours.
 // Cost: 32 B for each node, 36 B for each triangle; a stack of 48 words.
 
 @if(scene.masked) import lib/holes;

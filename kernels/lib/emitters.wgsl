@@ -2,9 +2,8 @@
 //
 // Positions are metres from `scene.center`. The engine gives the probabilities and the alias table. Spot cones:
 // KHR_lights_punctual's formula; `range` is ignored.
-// Cost: an emitter 80 B or two; of a triangle with a texture 3 vertices and 4 texels, with holes
-// twice that; of the environment some 20 elements
-// to find a texel by halving, and 8 for its radiance.
+// Cost: an emitter 80 B or two; of a triangle with a texture 3 vertices and 4 texels, with holes twice that; of the
+// environment some 20 elements to find a texel by halving, and 8 for its radiance.
 
 @if(scene.environment) import lib/environment_choice;
 @if(scene.masked) import lib/holes;

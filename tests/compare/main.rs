@@ -146,7 +146,7 @@ fn a_comparison_goes_on_where_it_stopped() {
         bench.json(&[&["compare", scene.as_str()], &all[..], &SMALL, &["--out", &out]].concat())
     };
     let first = of(&["cones,resolution=16"]);
-    let both = of(&["cones,resolution=16", "cones,resolution=20"]);
+    let both = of(&["cones,resolution=16", "cones,resolution=32"]);
     assert_eq!(names(&both).len(), 2);
     assert_eq!(
         run(&both, "cones, resolution=16"),
@@ -166,13 +166,13 @@ fn shards_of_a_sweep_come_to_the_whole() {
     let bench = Bench::new();
     let scene = scene();
     let sweep = |out: &str, more: &[&str]| {
-        let grid = ["-p", "cones", "--set", "resolution=16,20", "--set", "bounces=1,2", "--repeats", "2"];
+        let grid = ["-p", "cones", "--set", "resolution=16,32", "--set", "bounces=1,2", "--repeats", "2"];
         let out = bench.path(out).display().to_string();
         bench.json(&[&["sweep", scene.as_str()], &grid[..], &SMALL, &["--out", &out], more].concat())
     };
     let whole = sweep("whole", &[]);
     assert_eq!(names(&whole).len(), 4);
-    let one = run(&whole, "cones, resolution=20, bounces=2");
+    let one = run(&whole, "cones, resolution=32, bounces=2");
     assert_eq!(one["repeats_ms"].as_array().map(Vec::len), Some(2));
     assert_eq!(one["gpu_ms"]["samples"].as_array().map(Vec::len), Some(4), "two frames of each repeat");
     assert_eq!(one["set"]["bounces"], "2");
@@ -194,7 +194,7 @@ fn shards_of_a_sweep_come_to_the_whole() {
         assert!(what == "frame" || what.starts_with("stage "), "{difference}");
     }
     let out = bench.path("other").display().to_string();
-    let other = ["-p", "cones,resolution=20", "--set", "display.exposure=1"];
+    let other = ["-p", "cones,resolution=32", "--set", "display.exposure=1"];
     bench.json(&[&["compare", scene.as_str()], &other[..], &SMALL, &["--out", &out]].concat());
     assert!(bench.ok(&["diff", "a", "other"]).contains("run: there → not there"));
     assert_eq!(bench.refused(&["diff", "a", "nowhere"]), (Some(2), "comparison-file".to_owned()));
@@ -207,9 +207,9 @@ fn shards_of_a_sweep_come_to_the_whole() {
 fn sweeps_say_what_each_step_costs_and_brings() {
     let bench = Bench::new();
     let scene = scene();
-    let grid = ["-p", "cones", "--set", "resolution=16,20", "--repeats", "1", "--one-at-a-time"];
+    let grid = ["-p", "cones", "--set", "resolution=16,32", "--repeats", "1", "--one-at-a-time"];
     let text = bench.ok(&[&["sweep", scene.as_str()], &grid[..], &SMALL].concat());
-    assert!(text.contains("resolution 16 → 20: "), "{text}");
+    assert!(text.contains("resolution 16 → 32: "), "{text}");
     assert!(text.contains("the cheapest within 10 % of the best: cones, resolution="), "{text}");
     let runs: Vec<_> = std::fs::read_dir(bench.path("runs")).expect("runs").flatten().collect();
     assert_eq!(runs.len(), 1, "a folder with date and name");
@@ -227,7 +227,7 @@ fn what_can_not_be_compared_is_refused() {
     assert_eq!(refused(&["-p", "cones,resolution"]), input("pipeline-option"));
     assert_eq!(refused(&["-p", "cone"]), input("unknown-pipeline"));
     assert_eq!(refused(&["-p", "cones,resolutoin=8"]), input("unknown-knob"));
-    assert_eq!(refused(&["-p", "cones,resolution=20", "--reference", "cones"]), input("no-progress"));
+    assert_eq!(refused(&["-p", "cones,resolution=32", "--reference", "cones"]), input("no-progress"));
     let twice = ["sweep", &scene, "-p", "cones", "--set", "bounces=1", "--set", "bounces=2"];
     assert_eq!(bench.refused(&twice), input("swept-twice"));
     let render = ["render", &scene, "-p", "cones", "--samples", "3"];
