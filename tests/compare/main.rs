@@ -227,7 +227,8 @@ fn what_can_not_be_compared_is_refused() {
     assert_eq!(refused(&["-p", "cones,resolution"]), input("pipeline-option"));
     assert_eq!(refused(&["-p", "cone"]), input("unknown-pipeline"));
     assert_eq!(refused(&["-p", "cones,resolutoin=8"]), input("unknown-knob"));
-    assert_eq!(refused(&["-p", "cones,resolution=32", "--reference", "cones"]), input("no-progress"));
+    let no_truth = ["compare", &scene, "-p", "cones,resolution=32", "--reference", "volume"];
+    assert_eq!(bench.refused(&[&no_truth[..], &SMALL[..6]].concat()), input("no-progress"));
     let twice = ["sweep", &scene, "-p", "cones", "--set", "bounces=1", "--set", "bounces=2"];
     assert_eq!(bench.refused(&twice), input("swept-twice"));
     let render = ["render", &scene, "-p", "cones", "--samples", "3"];
