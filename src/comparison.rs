@@ -40,6 +40,8 @@ pub struct SceneEntry {
     /// As given on the command line.
     pub file: String,
     pub camera: String,
+    /// Of all its files, where things are, and the camera: the same only for the same scene.
+    pub content: String,
     pub triangles: usize,
     /// What the loader left out, one sentence each.
     pub lacks: Vec<String>,

@@ -15,7 +15,8 @@ use std::time::{Duration, Instant};
 /// Ends the name of an output that is the variance of another.
 pub const VARIANCE: &str = "_variance";
 
-/// When to stop; whichever comes first. At least two batches are run, since one has no variance.
+/// When to stop; whichever comes first, and at once if nothing is said. At least two batches are run, since one has no
+/// variance.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Until {
     /// For each pixel, those of an estimate that the run goes on from included.
@@ -103,6 +104,7 @@ pub fn converge(
     let (mut batches, mut next_look, mut kept) = (0, 2, start);
     let mut error = None;
     let mut spent = Vec::new();
+    let nothing_said = *until == Until::default();
     loop {
         for _ in 0..progress.frames {
             let times = frame.run(gpu, &Changes::All)?;
@@ -120,7 +122,7 @@ pub fn converge(
                 .zip(error)
                 .map(|(goal, (at, error)): (f64, (u64, f64))| goal / (error * at as f64 / samples as f64)),
         ];
-        let done = enough.into_iter().flatten().fold(0.0, f64::max);
+        let done = enough.into_iter().flatten().fold(if nothing_said { 1.0 } else { 0.0 }, f64::max);
         let missing = samples as f64 * (1.0 - done).max(0.0) / done;
         let left = (done > 0.0).then(|| elapsed.as_secs_f64() * missing / (samples - first) as f64);
         watch(Step { samples, done: done.min(1.0), left }, None)?;
@@ -142,7 +144,8 @@ pub fn converge(
             next_look = batches + (batches / 4).max(1);
         }
         let good = until.error.zip(error).is_some_and(|(goal, (_, error))| error <= goal);
-        let over = until.samples.is_some_and(|most| samples >= most)
+        let over = nothing_said
+            || until.samples.is_some_and(|most| samples >= most)
             || until.time.is_some_and(|most| elapsed >= most);
         if good || over {
             return Ok((all, spent));

@@ -133,36 +133,54 @@ fn is_enough(estimate: &Estimate, until: &Until) -> bool {
     met.into_iter().flatten().any(|met| met)
 }
 
-/// A name for all that the estimate depends on.
-fn key(scene: &Scene, prepared: &Prepared, progress: &PlannedProgress) -> Result<String> {
-    let mut hash = blake3::Hasher::new();
-    let mut add = |bytes: &[u8]| {
-        hash.update(&(bytes.len() as u64).to_le_bytes());
-        hash.update(bytes);
-    };
-    add(&FORMAT.to_le_bytes());
+/// Hashes pieces so that none runs into the next.
+#[derive(Default)]
+struct Hash(blake3::Hasher);
+
+impl Hash {
+    fn add(&mut self, bytes: &[u8]) {
+        self.0.update(&(bytes.len() as u64).to_le_bytes());
+        self.0.update(bytes);
+    }
+
+    fn name(&self) -> String {
+        self.0.finalize().to_hex()[..32].to_owned()
+    }
+}
+
+/// A name for all of a scene that a picture of this size shows through this camera.
+pub fn content(scene: &Scene, camera: usize, [width, height]: [u32; 2]) -> Result<String> {
+    let mut hash = Hash::default();
     for file in &scene.files {
         let content = std::fs::read(file)
             .map_err(|e| Problem::input("scene-file", format!("can't read `{}`: {e}", file.display())))?;
-        add(&content);
+        hash.add(&content);
     }
     // Where things are: the scene may be shown at any time of its motion.
-    add(bytemuck::cast_slice(&scene.instances));
-    add(bytemuck::cast_slice(&scene.lights));
-    let [width, height] = prepared.size;
-    let camera = scene.cameras[prepared.camera].uniform(f64::from(width) / f64::from(height));
-    add(bytemuck::bytes_of(&camera));
-    add(bytemuck::cast_slice(&[width, height]));
+    hash.add(bytemuck::cast_slice(&scene.instances));
+    hash.add(bytemuck::cast_slice(&scene.lights));
+    if let Some(camera) = scene.cameras.get(camera) {
+        hash.add(bytemuck::bytes_of(&camera.uniform(f64::from(width) / f64::from(height))));
+    }
+    hash.add(bytemuck::cast_slice(&[width, height]));
+    Ok(hash.name())
+}
+
+/// A name for all that the estimate depends on.
+fn key(scene: &Scene, prepared: &Prepared, progress: &PlannedProgress) -> Result<String> {
+    let mut hash = Hash::default();
+    hash.add(&FORMAT.to_le_bytes());
+    hash.add(content(scene, prepared.camera, prepared.size)?.as_bytes());
     let plan = &prepared.graph.plan;
     for knob in plan.knobs.iter().filter(|knob| knob.path != progress.first) {
-        add(knob.path.as_bytes());
-        add(knob.value.to_string().as_bytes());
+        hash.add(knob.path.as_bytes());
+        hash.add(knob.value.to_string().as_bytes());
     }
     // Not kernels alone: what they are told is worked out in the pipeline.
     for text in prepared.documents().values() {
-        add(text.as_bytes());
+        hash.add(text.as_bytes());
     }
-    Ok(hash.finalize().to_hex()[..32].to_owned())
+    Ok(hash.name())
 }
 
 fn pictures_of(folder: &Path, samples: u64) -> PathBuf {

@@ -1,16 +1,17 @@
 // Light from an emitter chosen at random: point, spot and directional lights, emissive triangles, the environment.
 //
-// Positions are metres from `scene.center`. The engine gives the probabilities and the alias table. Spot cones:
-// KHR_lights_punctual's formula; `range` is ignored.
+// Positions are metres from `scene.center`. The engine gives the probabilities and the alias table. `range` is ignored.
 // Cost: an emitter 80 B or two; of a triangle with a texture 3 vertices and 4 texels, with holes twice that; of the
 // environment some 20 elements to find a texel by halving, and 8 for its radiance.
 
 @if(scene.environment) import lib/environment_choice;
 @if(scene.masked) import lib/holes;
+import lib/leaving;
 import lib/material;
 import lib/math;
 import lib/random;
 import lib/scene;
+import lib/spot;
 
 struct Emitter {
     a: vec3f,
@@ -90,9 +91,7 @@ fn arriving_from(index: u32, position: vec3f, random: vec2f) -> Arriving {
     out.to_light = d / out.distance;
     out.light = e.c / squared;
     if e.kind == EMITTER_SPOT {
-        let cosine = dot(-out.to_light, e.b);
-        let t = clamp((cosine - e.cos_outer) / max(e.cos_inner - e.cos_outer, 0.001), 0.0, 1.0);
-        out.light *= t * t;
+        out.light *= spot_share(dot(-out.to_light, e.b), e.cos_outer, e.cos_inner);
     }
     return out;
 }
@@ -115,7 +114,7 @@ fn from_triangle(e: Emitter, position: vec3f, random: vec2f) -> Arriving {
     let material = instances[e.instance].material;
     let front = cosine > 0.0 || (materials[material].flags & MATERIAL_DOUBLE_SIDED) != 0u;
     out.plane = select(-plane, plane, cosine > 0.0);
-    out.slack = max(norm_max(e.a), max(norm_max(e.b), norm_max(e.c))) * 1.5258789e-5;
+    out.slack = slack_of(e.a, e.b, e.c);
     if !front || cosine == 0.0 {
         return out;
     }

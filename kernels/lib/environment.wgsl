@@ -35,13 +35,18 @@ fn environment_level(at: vec2f, level: u32) -> vec3f {
     return mix(top, low_row, weight.y).rgb;
 }
 
-/// Mean radiance that comes from around the unit vector `direction`, over `width` radians; W/(sr·m²).
-fn environment_at(direction: vec3f, width: f32) -> vec3f {
+/// Where a direction is in the picture: columns and rows from 0 to 1.
+fn environment_point(direction: vec3f) -> vec2f {
     // Straight up and down there is no angle, and what atan2 gives is not defined.
     let upright = abs(direction.x) + abs(direction.z) < 1e-12;
     let around = atan2(select(direction.x, 0.0, upright), select(-direction.z, 1.0, upright)) - scene.environment_turn;
     let down = acos(clamp(direction.y, -1.0, 1.0));
-    let at = vec2f(fract(around / 6.2831853 + 0.5), down / 3.1415927);
+    return vec2f(fract(around / 6.2831853 + 0.5), down / 3.1415927);
+}
+
+/// Mean radiance that comes from around the unit vector `direction`, over `width` radians; W/(sr·m²).
+fn environment_at(direction: vec3f, width: f32) -> vec3f {
+    let at = environment_point(direction);
     let texel = 3.1415927 / f32(scene.environment_height);
     let level = clamp(log2(max(width / texel, 1e-6)), 0.0, f32(scene.environment_levels - 1u));
     let fine = u32(level);

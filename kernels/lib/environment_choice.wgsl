@@ -64,13 +64,7 @@ fn environment_choose(random: vec2f) -> vec4f {
 
 /// Density of `environment_choose` for a direction.
 fn environment_density(direction: vec3f) -> f32 {
-    let upright = abs(direction.x) + abs(direction.z) < 1e-12;
-    let around = atan2(select(direction.x, 0.0, upright), select(-direction.z, 1.0, upright)) - scene.environment_turn;
-    let down = acos(clamp(direction.y, -1.0, 1.0)) / PI;
-    let column = u32(fract(around / (2.0 * PI) + 0.5) * f32(scene.environment_width));
-    let row = u32(down * f32(scene.environment_height));
-    return environment_texel_density(
-        min(column, scene.environment_width - 1u),
-        min(row, scene.environment_height - 1u),
-    );
+    let size = vec2u(scene.environment_width, scene.environment_height);
+    let texel = min(vec2u(environment_point(direction) * vec2f(size)), size - 1u);
+    return environment_texel_density(texel.x, texel.y);
 }

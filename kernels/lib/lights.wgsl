@@ -4,6 +4,8 @@
 // for directional ones. Spot cones: KHR_lights_punctual's formula; `range` is ignored.
 // Cost: a light 64 B; a look into its map a view (112 B) and 4 depth texels, filtered by the comparing sampler.
 
+import lib/spot;
+
 struct Light {
     position: vec3f,
     kind: u32,
@@ -60,9 +62,7 @@ fn arrival(light: Light, position: vec3f) -> Arrival {
     let to_light = d * inverseSqrt(squared_distance);
     var falloff = 1.0 / squared_distance;
     if light.kind == LIGHT_SPOT {
-        let c = dot(-to_light, light.direction);
-        let t = clamp((c - light.cos_outer) / max(light.cos_inner - light.cos_outer, 0.001), 0.0, 1.0);
-        falloff *= t * t;
+        falloff *= spot_share(dot(-to_light, light.direction), light.cos_outer, light.cos_inner);
     }
     return Arrival(to_light, light.intensity * falloff);
 }

@@ -33,3 +33,8 @@ fn frame_around(n: vec3f) -> mat3x3f {
         vec3f(b, s + n.y * n.y * a, -n.y),
     );
 }
+
+/// Normals that turn away from the triangle's own side would light it from behind: then it is `otherwise`.
+fn outward(normal: vec3f, face_normal: vec3f, otherwise: vec3f) -> vec3f {
+    return select(otherwise, normal, dot(normal, face_normal) > 0.0);
+}

@@ -1,10 +1,11 @@
-// The surface that a ray met: place, normals, what it reflects and emits; and where rays leave it.
+// The surface that a ray met: place, normals, what it reflects and emits.
 //
 // Positions are metres from `scene.center`. Images at their full size, bilinear: no footprint. Normals point to where the
 // ray came from; a shading normal that turns away from the triangle's side is not used.
 // Cost: 3 vertices, an instance, a material, 4 texels for each of its images.
 
 import lib/bvh;
+import lib/leaving;
 import lib/material;
 import lib/math;
 import lib/scene;
@@ -22,19 +23,8 @@ struct Met {
     emission: vec3f,
     /// How likely a point chosen by `lib/emitters` lies in a unit of the triangle's area, 1/m².
     density: f32,
-    /// Bound of the rounding errors of `position`, metres; see `leaving`.
+    /// Metres; see `leaving`.
     slack: f32,
-}
-
-/// A point from which rays leave a surface on the side of `normal`, unit length, without meeting it again: moved by a
-/// bound of its rounding errors, as a sum of products of corners and weights has them (Pharr, Jakob, Humphreys, "Physically
-/// Based Rendering", 6.8), with the room that intersections need (Wächter and Binder 2019: 256 units in the last place).
-fn leaving(position: vec3f, normal: vec3f, slack: f32) -> vec3f {
-    return position + normal * slack;
-}
-
-fn slack_of(a: vec3f, b: vec3f, c: vec3f) -> f32 {
-    return max(norm_max(a), max(norm_max(b), norm_max(c))) * 1.5258789e-5;
 }
 
 fn met(hit: Hit, direction: vec3f) -> Met {
@@ -93,9 +83,4 @@ fn met(hit: Hit, direction: vec3f) -> Met {
         }
     }
     return out;
-}
-
-/// Normals that turn away from the triangle's own side would light it from behind: then it is `otherwise`.
-fn outward(normal: vec3f, plane: vec3f, otherwise: vec3f) -> vec3f {
-    return select(otherwise, normal, dot(normal, plane) > 0.0);
 }

@@ -61,11 +61,6 @@ struct Targets {
     @if(scene.emissive) @location(3) emission: vec4f,
 }
 
-/// Normals that turn away from the triangle's own side would light it from behind: then it is `otherwise`.
-fn outward(normal: vec3f, face_normal: vec3f, otherwise: vec3f) -> vec3f {
-    return select(otherwise, normal, dot(normal, face_normal) > 0.0);
-}
-
 @fragment
 fn fragment(in: Varying) -> Targets {
     let footprint = footprint_of(dpdx(in.uv), dpdy(in.uv));

@@ -23,8 +23,7 @@ pub struct CompareArgs {
     /// Scenes: glTF files and settings.
     #[arg(required = true)]
     scenes: Vec<PathBuf>,
-    /// A pipeline, with parts and knobs of its own: `cones`, `cones,bounces=1,hemisphere=hemisphere/spiral`. May be
-    /// repeated.
+    /// A pipeline, with knobs and parts of its own: NAME, NAME,KNOB=VALUE, NAME,KNOB=VALUE,ROLE=PART. May be repeated.
     #[arg(short, long = "pipeline", value_name = "NAME[,KEY=VALUE…]", required = true)]
     pipelines: Vec<String>,
     /// Set a knob in all pipelines; may be repeated.

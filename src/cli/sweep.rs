@@ -15,7 +15,7 @@ pub struct SweepArgs {
     /// Scenes: glTF files and settings.
     #[arg(required = true)]
     scenes: Vec<PathBuf>,
-    /// The pipeline, with parts and knobs that stay: `cones`, `cones,bounces=1`.
+    /// The pipeline, with knobs and parts that stay: NAME, NAME,KNOB=VALUE.
     #[arg(short, long, value_name = "NAME[,KEY=VALUE…]")]
     pipeline: String,
     /// Values of a knob; may be repeated for others.

@@ -11,7 +11,7 @@ use std::path::Path;
 pub struct Difference {
     /// `SCENE / RUN`, or empty where it is about all.
     pub run: String,
-    /// `adapter`, `knob resolution`, `document kernels/…`, `frame`, `stage …`, `error color relmse`, `picture color`.
+    /// `adapter`, `scene …`, `knob …`, `document kernels/…`, `frame`, `stage …`, `error color relmse`, `picture color`.
     pub what: String,
     pub before: String,
     pub after: String,
@@ -42,6 +42,11 @@ pub fn diff(before: (&Comparison, &Path), after: (&Comparison, &Path)) -> Result
     found.text("size", &format!("{}x{}", a.size[0], a.size[1]), &format!("{}x{}", b.size[0], b.size[1]));
     found.text("curve", &a.curve, &b.curve);
     found.text("exposure", &a.exposure.to_string(), &b.exposure.to_string());
+    for scene in &a.scenes {
+        if let Some(other) = b.scenes.iter().find(|other| other.name == scene.name) {
+            found.text(&format!("scene {}", scene.name), &scene.content, &other.content);
+        }
+    }
     let name = |run: &Run| format!("{} / {}", run.scene, run.name);
     let named = |comparison: &Comparison| -> BTreeMap<String, Run> {
         comparison.runs.iter().map(|run| (name(run), run.clone())).collect()

@@ -47,23 +47,30 @@ pub fn write(
     Ok(written)
 }
 
-/// Copies of what was run, named by their content: runs share them.
-pub fn documents(plan: &Plan, documents: &BTreeMap<String, String>) -> Result<BTreeMap<String, String>> {
+/// Where copies of what was run are, by the names of the files; named by their content: runs share them.
+pub fn copies(documents: &BTreeMap<&str, &str>) -> BTreeMap<String, String> {
+    let copy = |(name, text): (&&str, &&str)| {
+        let hash = blake3::hash(text.as_bytes()).to_hex();
+        let extension = name.rsplit('.').next().unwrap_or("txt");
+        ((*name).to_owned(), format!("documents/{}.{extension}", &hash[..16]))
+    };
+    documents.iter().map(copy).collect()
+}
+
+/// Writes the copies.
+pub fn documents(plan: &Plan, documents: &BTreeMap<&str, &str>) -> Result<BTreeMap<String, String>> {
     let folder = plan.folder.join("documents");
     std::fs::create_dir_all(&folder).map_err(|e| {
         Problem::failure("unwritable", format!("can't make the folder `{}`: {e}", folder.display()))
     })?;
-    let copy = |(name, text): (&String, &String)| {
-        let hash = blake3::hash(text.as_bytes()).to_hex();
-        let extension = name.rsplit('.').next().unwrap_or("txt");
-        let relative = format!("documents/{}.{extension}", &hash[..16]);
-        let path = plan.folder.join(&relative);
-        if !path.exists() {
+    let copies = copies(documents);
+    for (name, relative) in &copies {
+        let path = plan.folder.join(relative);
+        if let Some(text) = documents.get(name.as_str()).filter(|_| !path.exists()) {
             picture::write_bytes(&path, text.as_bytes())?;
         }
-        Ok((name.clone(), relative))
-    };
-    documents.iter().map(copy).collect()
+    }
+    Ok(copies)
 }
 
 /// What a PNG can show of numbers that are no light: directions as ½ + ½ n, distances as a part of the largest.

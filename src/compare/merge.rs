@@ -1,6 +1,6 @@
 //! Parts of one comparison, made apart, as one.
 
-use crate::comparison::{Comparison, Pictures};
+use crate::comparison::{Comparison, Pictures, SceneEntry};
 use crate::problem::{Problem, Result};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -10,37 +10,48 @@ use std::path::{Path, PathBuf};
 ///
 /// Errors: `nothing-to-merge`, `unlike-comparisons`, and those of reading and writing.
 pub fn merge(folders: &[PathBuf], into: &Path) -> Result<Comparison> {
-    let mut all: Option<Comparison> = None;
+    let mut parts = Vec::new();
     for folder in folders {
         let part = Comparison::read(folder)?.ok_or_else(|| {
             Problem::input("nothing-to-merge", format!("there is no comparison in `{}`", folder.display()))
                 .help("name the folders that `voxgi sweep --shard` or `voxgi compare` wrote")
         })?;
-        let files = files(&part);
-        match &mut all {
-            None => {
-                all = Some(Comparison {
-                    name: into.file_name().unwrap_or_default().to_string_lossy().into_owned(),
-                    ..part
-                });
-            }
-            Some(all) if !all.like(&part) => {
-                let message = format!("`{}` can't stand beside the first", folder.display());
-                let help = "size, exposure, curve, adapter, version and command must be the same";
-                return Err(Problem::input("unlike-comparisons", message).help(help).into());
-            }
-            Some(all) => all.take(part),
+        parts.push((folder, part));
+    }
+    let Some((_, first)) = parts.first() else {
+        return Err(Problem::input("nothing-to-merge", "no folders were given").into());
+    };
+    let mut all = Comparison {
+        name: into.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        scenes: Vec::new(),
+        runs: Vec::new(),
+        ..first.clone()
+    };
+    // All are looked at before anything is written.
+    for (folder, part) in &parts {
+        if !all.like(part) || !all.same_scenes(part) {
+            let message = format!("`{}` can't stand beside `{}`", folder.display(), parts[0].0.display());
+            let help = "scenes, size, exposure, curve, adapter, version and command must be the same";
+            return Err(Problem::input("unlike-comparisons", message).help(help).into());
         }
-        for file in files {
+        all.take(part.clone());
+    }
+    for (folder, part) in &parts {
+        for file in files(part) {
             copy(folder, into, &file)?;
         }
     }
-    let all = all.ok_or_else(|| Problem::input("nothing-to-merge", "no folders were given"))?;
     all.write(into)?;
     Ok(all)
 }
 
 impl Comparison {
+    /// Whether scenes that both have are the same.
+    fn same_scenes(&self, other: &Self) -> bool {
+        let twin = |scene: &SceneEntry| other.scenes.iter().find(|other| other.name == scene.name);
+        self.scenes.iter().all(|scene| twin(scene).is_none_or(|twin| twin.content == scene.content))
+    }
+
     fn take(&mut self, other: Self) {
         for scene in other.scenes {
             match self.scenes.iter_mut().find(|own| own.name == scene.name) {

@@ -27,7 +27,7 @@ use crate::measure;
 use crate::picture;
 use crate::problem::{Problem, Result};
 use crate::record;
-use crate::reference::Cache;
+use crate::reference::{self, Cache};
 use crate::scene::{self, Scene};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -116,35 +116,59 @@ impl<'a> Comparing<'a> {
             }
             Err(problems) => return Err(problems),
         };
-        std::fs::create_dir_all(&plan.folder).map_err(|e| {
-            Problem::failure("unwritable", format!("can't make the folder `{}`: {e}", plan.folder.display()))
-        })?;
         Ok(Self { plan, library, cache, comparison })
     }
 
-    /// Makes all that is not there yet.
+    /// Makes all that is not there yet. Nothing is written before all that is asked for is known to be right.
     pub fn run(mut self, watch: &mut dyn FnMut(&Doing)) -> Result<Comparison> {
-        for path in &self.plan.scenes {
+        let plan = self.plan;
+        let mut scenes = Vec::new();
+        for path in &plan.scenes {
             let mut scene = scene::load(path)?;
-            scene.pose(self.plan.time);
-            self.scene(path, &scene, watch)?;
+            scene.pose(plan.time);
+            for subject in &plan.subjects {
+                truth::light(plan, self.library, &subject.prepare(plan, self.library, &scene)?)?;
+            }
+            self.enter(path, &scene)?;
+            scenes.push(scene);
+        }
+        for scene in &scenes {
+            self.scene(scene, watch)?;
         }
         Ok(self.comparison)
     }
 
-    fn scene(&mut self, path: &Path, scene: &Scene, watch: &mut dyn FnMut(&Doing)) -> Result<()> {
+    /// Notes a scene, or finds it noted as what it is.
+    fn enter(&mut self, path: &Path, scene: &Scene) -> Result<()> {
         let plan = self.plan;
-        if !self.comparison.scenes.iter().any(|entry| entry.name == scene.name) {
-            let camera = scene.cameras.get(plan.camera).map(|c| c.name.clone()).unwrap_or_default();
-            self.comparison.scenes.push(SceneEntry {
-                name: scene.name.clone(),
-                file: path.display().to_string(),
-                camera,
-                triangles: scene.triangles.len(),
-                lacks: scene.lacks.iter().map(ToString::to_string).collect(),
-                references: BTreeMap::new(),
-            });
+        let content = reference::content(scene, plan.camera, plan.size)?;
+        match self.comparison.scenes.iter().find(|entry| entry.name == scene.name) {
+            Some(entry) if entry.content == content => Ok(()),
+            Some(entry) => {
+                let message =
+                    format!("`{}` is another scene than `{}` of the same name", path.display(), entry.file);
+                let help =
+                    "rename one of the two; if the file was changed, choose another folder with `--out`";
+                Err(Problem::input("other-scene", message).help(help).into())
+            }
+            None => {
+                let camera = scene.cameras.get(plan.camera).map(|c| c.name.clone()).unwrap_or_default();
+                self.comparison.scenes.push(SceneEntry {
+                    name: scene.name.clone(),
+                    file: path.display().to_string(),
+                    camera,
+                    content,
+                    triangles: scene.triangles.len(),
+                    lacks: scene.lacks.iter().map(ToString::to_string).collect(),
+                    references: BTreeMap::new(),
+                });
+                Ok(())
+            }
         }
+    }
+
+    fn scene(&mut self, scene: &Scene, watch: &mut dyn FnMut(&Doing)) -> Result<()> {
+        let plan = self.plan;
         let mut truths: BTreeMap<String, Truth> = BTreeMap::new();
         let mut order: Vec<(u32, &Subject)> =
             (0..plan.repeats).flat_map(|repeat| plan.subjects.iter().map(move |s| (repeat, s))).collect();
@@ -158,13 +182,18 @@ impl<'a> Comparing<'a> {
             let name = subject.name();
             let turn = met.entry(name.clone()).or_default();
             *turn += 1;
+            let prepared = subject.prepare(plan, self.library, scene)?;
+            let light = truth::light(plan, self.library, &prepared)?;
+            let documents = files::copies(&prepared.documents());
             let same = |run: &Run| run.scene == scene.name && run.name == name;
+            // What was run from other files, or held against another reference, is not this.
+            self.comparison
+                .runs
+                .retain(|run| !same(run) || (run.documents == documents && run.reference == light.name));
             let before = self.comparison.runs.iter().position(same);
             if before.is_some_and(|index| self.comparison.runs[index].repeats_ms.len() >= *turn) {
                 continue;
             }
-            let prepared = subject.prepare(plan, self.library, scene)?;
-            let light = truth::light(plan, self.library, &prepared)?;
             if !truths.contains_key(&light.name) {
                 let mut step = |step| {
                     watch(&Doing::Reference { scene: scene.name.clone(), step });

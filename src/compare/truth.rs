@@ -156,7 +156,8 @@ impl Truth {
         let shown = done.pictures.iter().map(|(name, picture)| (name.as_str(), picture)).collect();
         let into = format!("{}/{}", files::slug(&scene.name), files::slug(&name));
         let pictures = files::write(plan, &into, &shown, &maps)?;
-        let documents = files::documents(plan, &done.documents)?;
+        let documents = done.documents.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
+        let documents = files::documents(plan, &documents)?;
         let (clock, clock_reason) = record::clock(&done.clock);
         let samples: Vec<Option<f64>> = done.samples.frames.iter().map(|t| t.frame).collect();
         let gpu_ms = Timing::of(samples);

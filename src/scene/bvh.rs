@@ -108,7 +108,7 @@ fn densities(scene: &Scene, corners: &[[Vec3; 3]]) -> Vec<f32> {
     let mut densities = vec![0.0; corners.len()];
     for (triangle, probability) in emitting(scene, corners) {
         let area = area(&corners[triangle]);
-        densities[triangle] = (f64::from(probability) / area) as f32;
+        densities[triangle] = if area > 0.0 { (f64::from(probability) / area) as f32 } else { 0.0 };
     }
     densities
 }

@@ -49,6 +49,7 @@ fn luminance(color: Vec3) -> f64 {
 
 /// All that gives light, with probabilities that add up to 1.
 fn sources(scene: &Scene, corners: &[[Vec3; 3]]) -> Vec<(Source, f32)> {
+    let moves = scene.still_triangles < scene.triangles.len();
     let radius = 0.5 * scene.bounds.diagonal();
     let disk = PI * radius * radius;
     let mut sources: Vec<(Source, f64)> = Vec::new();
@@ -56,7 +57,8 @@ fn sources(scene: &Scene, corners: &[[Vec3; 3]]) -> Vec<(Source, f32)> {
     for (index, triangle) in scene.triangles.iter().enumerate() {
         let material = scene.instances[triangle.instance as usize].material as usize;
         let area = if radiances[material] > 0.0 { area(&corners[index]) } else { 0.0 };
-        if area > 0.0 {
+        // One that motion makes nothing of stays in the list, which is as long at all times.
+        if area > 0.0 || (moves && radiances[material] > 0.0) {
             let sides = if scene.materials[material].flags & DOUBLE_SIDED == 0 { 1.0 } else { 2.0 };
             sources.push((Source::Triangle(index), PI * area * sides * radiances[material]));
         }

@@ -46,8 +46,12 @@ impl Bench {
     }
 }
 
+fn shipped(file: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(file)
+}
+
 fn scene() -> String {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes/cornell-point.glb").display().to_string()
+    shipped("scenes/cornell-point.glb").display().to_string()
 }
 
 /// Small, and as good as 32 samples are.
@@ -153,6 +157,20 @@ fn a_comparison_goes_on_where_it_stopped() {
         run(&first, "cones, resolution=16"),
         "it was not run again"
     );
+    // From another kernel it is another run.
+    let kernel = bench.path("library/kernels/light/pixels.wgsl");
+    std::fs::create_dir_all(kernel.parent().expect("a folder")).expect("folders");
+    let text = std::fs::read_to_string(shipped("kernels/light/pixels.wgsl")).expect("the kernel");
+    let darker = text.replace("vec4f(light + textureLoad", "vec4f(0.5 * light + textureLoad");
+    assert_ne!(text, darker);
+    std::fs::write(&kernel, darker).expect("a kernel");
+    let changed =
+        ["--library", "library", "-p", "cones,resolution=16", "-p", "cones,resolution=32", "--out", &out];
+    let changed = bench.json(&[&["compare", scene.as_str()], &changed[..], &SMALL].concat());
+    let bias =
+        |comparison: &Value| run(comparison, "cones, resolution=16")["errors"]["color"]["bias"].as_f64();
+    assert!(bias(&changed) < bias(&both), "{:?} {:?}", bias(&changed), bias(&both));
+    assert_eq!(names(&changed).len(), 2);
     let other_size =
         ["compare", &scene, "-p", "cones,resolution=16", "--size", "16x16", "--samples", "32", "--out", &out];
     assert_eq!(bench.refused(&other_size), (Some(2), "other-comparison".to_owned()));
@@ -192,6 +210,7 @@ fn shards_of_a_sweep_come_to_the_whole() {
     for difference in differences["differences"].as_array().expect("a list") {
         let what = difference["what"].as_str().expect("what");
         assert!(what == "frame" || what.starts_with("stage "), "{difference}");
+        assert!(difference["ratio"].is_number(), "a time, no other fate: {difference}");
     }
     let out = bench.path("other").display().to_string();
     let other = ["-p", "cones,resolution=32", "--set", "display.exposure=1"];
@@ -200,7 +219,7 @@ fn shards_of_a_sweep_come_to_the_whole() {
     assert_eq!(bench.refused(&["diff", "a", "nowhere"]), (Some(2), "comparison-file".to_owned()));
     let unlike = bench.voxgi(&["merge", "a", "other", "--out", "bad"]);
     assert_eq!(unlike.status.code(), Some(2));
-    assert!(!bench.path("bad/comparison.json").exists(), "nothing half done");
+    assert!(!bench.path("bad").exists(), "nothing half done");
 }
 
 #[test]
@@ -231,6 +250,11 @@ fn what_can_not_be_compared_is_refused() {
     assert_eq!(bench.refused(&[&no_truth[..], &SMALL[..6]].concat()), input("no-progress"));
     let twice = ["sweep", &scene, "-p", "cones", "--set", "bounces=1", "--set", "bounces=2"];
     assert_eq!(bench.refused(&twice), input("swept-twice"));
+    let twin = bench.path("cornell-point.glb");
+    std::fs::copy(shipped("scenes/cornell-box.glb"), &twin).expect("another scene of that name");
+    let twins = ["compare", &scene, &twin.display().to_string(), "-p", "cones,resolution=16"];
+    assert_eq!(bench.refused(&[&twins[..], &SMALL].concat()), input("other-scene"));
+    assert!(!bench.path("runs").exists(), "what is refused leaves nothing behind");
     let render = ["render", &scene, "-p", "cones", "--samples", "3"];
     assert_eq!(bench.refused(&render), input("no-progress"));
 }

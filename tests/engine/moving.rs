@@ -121,3 +121,23 @@ fn only_what_changed_runs() {
     let rest: Vec<_> = whole.difference(&block).collect();
     assert_eq!(rest, ["voxelize/still"]);
 }
+
+/// What rays go through and what gives light are made anew where something moves: a scene that is played to a time is
+/// the scene as it is at that time.
+#[test]
+fn rays_meet_what_moved_where_it_is() {
+    let scene = moving_scene();
+    let mut later = scene.clone();
+    later.pose(1.3);
+    let job = |scene| Job::new(scene, "reference", [16, 16]).small("16", "16");
+    let (at_first, there) = (job(&scene), job(&later));
+    let plain = at_first.outputs(gpu(), 8);
+    let expected = there.outputs(gpu(), 8);
+    assert!(!differences(&plain, &expected).is_empty(), "the control: it moves");
+    let mut run = at_first.start(gpu()).expect("a run");
+    let mut play = Play::new(scene.clone(), 0, [16, 16], &run.frame);
+    play.go_to(&mut run.frame, gpu(), 1.3).expect("a pose");
+    run.frames(8).expect("frames");
+    let found = differences(&expected, &run.outputs());
+    assert!(found.is_empty(), "{found:?}");
+}

@@ -186,6 +186,17 @@ proptest! {
     }
 }
 
+/// As far out and as small as a scene may be.
+#[test]
+fn extremes_are_held() {
+    let at = |scale: f32| {
+        [Vec3::new(-scale, 0.0, scale), Vec3::new(scale, -scale, 0.0), Vec3::new(0.0, scale, -scale)]
+    };
+    check(&[at(voxgi::scene::FARTHEST)]);
+    check(&[at(voxgi::scene::FARTHEST), at(1.0), at(1e-18), at(0.0)]);
+    check(&(0..40).map(|i| at(10f32.powi(i - 20).min(voxgi::scene::FARTHEST))).collect::<Vec<_>>());
+}
+
 #[test]
 fn few_triangles_and_many_alike() {
     let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];

@@ -112,6 +112,7 @@ fn scene(folder: &Path, name: &str, at: usize) -> SceneEntry {
         name: name.to_owned(),
         file: format!("scenes/{name}.glb"),
         camera: "front".to_owned(),
+        content: name.to_owned(),
         triangles: 38 + at * 262_229,
         lacks: if at == 1 { vec!["2 transmissive materials are rendered opaque".to_owned()] } else { vec![] },
         references: BTreeMap::from([("full".to_owned(), reference)]),

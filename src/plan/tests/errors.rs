@@ -278,3 +278,15 @@ fn all_are_found_at_once_and_each_once() {
     ];
     assert_eq!(codes, expected);
 }
+
+#[test]
+fn progress() {
+    let knobs = "knobs: { \"first\": (default: 0, range: (0, 9), about: \"\") }";
+    for (progress, code) in [
+        ("(batch: 4, frames: 1, first: \"«frist»\")", "unknown-knob"),
+        ("(batch: \"«first»\", frames: 1, first: \"first\")", "size-zero"),
+        ("(batch: 4, frames: \"«first - 1»\", first: \"first\")", "out-of-range"),
+    ] {
+        errs(&format!("{knobs},\nprogress: {progress}"), code);
+    }
+}
