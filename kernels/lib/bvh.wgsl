@@ -13,6 +13,8 @@ var<storage, read> bvh: array<vec4u>;
 
 const BVH_LEAF: u32 = 0x80000000u;
 const BVH_DEPTH: u32 = 48u;
+/// In place of a node: the walk is at its end. An empty leaf.
+const BVH_ENDED: u32 = 0x80000000u;
 const NOTHING: u32 = 0xffffffffu;
 
 struct Hit {
@@ -62,21 +64,59 @@ fn open_at(record: u32, weights: vec2f) -> bool {
     return hole_at(material, ids, vec3f(1.0 - weights.x - weights.y, weights));
 }
 
-/// What a ray meets before `far`: the nearest triangle, or if `early` is set the first that is found.
-fn trace(origin: vec3f, direction: vec3f, far: f32, early: bool) -> Hit {
-    var hit = Hit(far, vec2f(0.0), NOTHING);
-    let ray = gridded(origin, direction);
+/// A ray from `origin` to `far` times `direction`; none if `far` is 0.
+struct Segment {
+    origin: vec3f,
+    direction: vec3f,
+    far: f32,
+}
+
+struct Traced {
+    hit: Hit,
+    /// Bit i: nothing lies on the i-th of the rays that only ask.
+    free: u32,
+}
+
+/// What `ray` meets first, and whether anything lies on two rays that only ask. Each thread walks one after another, so
+/// that threads of a subgroup wait for each other once and not for each of the rays.
+fn trace(asked: array<Segment, 2>, ray: Segment) -> Traced {
+    var out = Traced(Hit(0.0, vec2f(0.0), NOTHING), 0u);
+    // 1 and 2: the rays that ask, 3: the other.
+    var turn = 0u;
+    var walked: Segment;
+    var grid: Gridded;
+    var hit = out.hit;
     var stack: array<u32, BVH_DEPTH>;
     var height = 0u;
-    // The root is a node, after the grid.
-    var next = 1u;
-    // No record is visited twice.
-    let records = arrayLength(&bvh) / 2u;
+    var next = BVH_ENDED;
+    // No record is visited twice, and each ray ends once.
+    let records = 3u * (arrayLength(&bvh) / 2u + 1u);
     for (var leaf = 0u; leaf < records; leaf++) {
+        if next == BVH_ENDED {
+            if turn > 0u && hit.record == NOTHING {
+                out.free |= turn;
+            }
+            if turn < 1u && asked[0].far > 0.0 {
+                turn = 1u;
+                walked = asked[0];
+            } else if turn < 2u && asked[1].far > 0.0 {
+                turn = 2u;
+                walked = asked[1];
+            } else if ray.far > 0.0 {
+                turn = 3u;
+                walked = ray;
+            } else {
+                break;
+            }
+            grid = gridded(walked.origin, walked.direction);
+            hit = Hit(walked.far, vec2f(0.0), NOTHING);
+            // The root is a node, after the grid.
+            next = 1u;
+        }
         // Down to a leaf.
         for (var node = 0u; node < records && (next & BVH_LEAF) == 0u; node++) {
             let rest = bvh[2u * next + 1u];
-            let spans = children_of(bvh[2u * next], rest.xy, ray, hit.t);
+            let spans = children_of(bvh[2u * next], rest.xy, grid, hit.t);
             let children = rest.zw;
             let first = spans.x <= spans.y;
             let second = spans.z <= spans.w;
@@ -91,7 +131,7 @@ fn trace(origin: vec3f, direction: vec3f, far: f32, early: bool) -> Hit {
                 height -= 1u;
                 next = stack[height];
             } else {
-                return hit;
+                next = BVH_ENDED;
             }
         }
         let begin = next & 0x07ffffffu;
@@ -100,13 +140,13 @@ fn trace(origin: vec3f, direction: vec3f, far: f32, early: bool) -> Hit {
             let a = bitcast<vec3f>(bvh[2u * record].xyz);
             let ab = bitcast<vec3f>(bvh[2u * record + 1u].xyz) - a;
             let ac = bitcast<vec3f>(bvh[2u * record + 2u].xyz) - a;
-            let p = cross(direction, ac);
+            let p = cross(walked.direction, ac);
             let determinant = dot(ab, p);
             let scale = select(0.0, 1.0 / determinant, determinant != 0.0);
-            let offset = origin - a;
+            let offset = walked.origin - a;
             let u = dot(offset, p) * scale;
             let q = cross(offset, ab);
-            let v = dot(direction, q) * scale;
+            let v = dot(walked.direction, q) * scale;
             let t = dot(ac, q) * scale;
             if scale != 0.0 && min(u, v) >= -1e-6 && u + v <= 1.000001 && t > 0.0 && t < hit.t {
                 @if(scene.masked) {
@@ -115,16 +155,24 @@ fn trace(origin: vec3f, direction: vec3f, far: f32, early: bool) -> Hit {
                     }
                 }
                 hit = Hit(t, vec2f(u, v), record);
-                if early {
-                    return hit;
+                if turn < 3u {
+                    height = 0u;
+                    break;
                 }
             }
         }
         if height == 0u {
-            return hit;
+            next = BVH_ENDED;
+            if turn == 3u {
+                break;
+            }
+        } else {
+            height -= 1u;
+            next = stack[height];
         }
-        height -= 1u;
-        next = stack[height];
     }
-    return hit;
+    if turn == 3u {
+        out.hit = hit;
+    }
+    return out;
 }

@@ -52,11 +52,20 @@ struct Arriving {
     extentless: bool,
 }
 
-fn chosen_emitter(choice: f32) -> u32 {
-    let count = arrayLength(&emitters);
-    let at = choice * f32(count);
-    let index = min(u32(at), count - 1u);
-    return select(emitters[index].other, index, at - f32(index) < emitters[index].threshold);
+struct Chosen {
+    emitter: u32,
+    /// What is left of the random number: as evenly spread as that was, [0, 1).
+    random: f32,
+}
+
+fn chosen_emitter(random: u32) -> Chosen {
+    let column = scaled(random, arrayLength(&emitters));
+    let threshold = emitters[column.x].threshold;
+    let rest = unit_of(column.y);
+    if rest < threshold {
+        return Chosen(column.x, min(rest / threshold, BELOW_ONE));
+    }
+    return Chosen(emitters[column.x].other, min((rest - threshold) / (1.0 - threshold), BELOW_ONE));
 }
 
 fn arriving_from(index: u32, position: vec3f, random: vec2f) -> Arriving {

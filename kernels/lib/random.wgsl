@@ -17,6 +17,17 @@ fn hash_2(x: u32, y: u32) -> u32 {
     return hash(x ^ hash(y));
 }
 
+const BELOW_ONE: f32 = 0.99999994;
+
+/// x · count, as multiples of 2^32 and the rest: one of `count` by a random word, and a random word again.
+fn scaled(x: u32, count: u32) -> vec2u {
+    let a = vec2u(x & 0xffffu, x >> 16u);
+    let b = vec2u(count & 0xffffu, count >> 16u);
+    let one = a.y * b.x + ((a.x * b.x) >> 16u);
+    let other = a.x * b.y + (one & 0xffffu);
+    return vec2u(a.y * b.y + (one >> 16u) + (other >> 16u), x * count);
+}
+
 /// [0, 1).
 fn unit_of(bits: u32) -> f32 {
     return f32(bits >> 8u) * (1.0 / 16777216.0);
@@ -60,11 +71,17 @@ fn shuffled(sample: Sample, seed: u32) -> u32 {
 
 /// A point of [0, 1)², for this pair of dimensions.
 fn random_2(sample: Sample, dimension: u32) -> vec2f {
+    let words = random_words(sample, dimension);
+    return vec2f(unit_of(words.x), unit_of(words.y));
+}
+
+/// The same in units of 2^-32.
+fn random_words(sample: Sample, dimension: u32) -> vec2u {
     let seed = hash_2(sample.seed, dimension);
     let index = shuffled(sample, seed);
     let x = scramble_reversed(index, hash(seed ^ 0x9e3779b9u));
     let y = scramble_reversed(sobol_1_reversed(index), hash(seed ^ 0x7f4a7c15u));
-    return vec2f(unit_of(reverseBits(x)), unit_of(reverseBits(y)));
+    return vec2u(reverseBits(x), reverseBits(y));
 }
 
 /// A number of [0, 1), for this dimension: well spread over the batch too.

@@ -111,9 +111,19 @@ fn cosine_direction(n: vec3f, random: vec2f) -> vec3f {
     return frame_around(n) * vec3f(radius * cos(angle), up, radius * sin(angle));
 }
 
+/// Whether `choose_direction` takes a direction around the normal, dense as its cosine.
+fn by_cosine(r: Reflecting, choice: f32) -> bool {
+    @if(!diffuse_only) {
+        return choice >= r.glossy;
+    }
+    @if(diffuse_only) {
+        return true;
+    }
+}
+
 fn choose_direction(r: Reflecting, random: vec2f, choice: f32) -> vec3f {
     @if(!diffuse_only) {
-        if choice < r.glossy {
+        if !by_cosine(r, choice) {
             // Visible normals by a spherical cap (Dupuy and Benyoub 2023).
             let frame = frame_around(r.n);
             let view = transpose(frame) * r.to_viewer;
