@@ -98,7 +98,8 @@ pub fn converge(
     until: &Until,
     watch: &mut dyn FnMut(Step, Option<&Estimate>) -> Result<()>,
 ) -> Result<(Estimate, Vec<Times>)> {
-    const KEEP: Duration = Duration::from_secs(30);
+    // What an interruption may cost: a third of the time so far, and half a minute at most.
+    const KEEP: [Duration; 2] = [Duration::from_secs(1), Duration::from_secs(30)];
     let start = Instant::now();
     let first = before.map_or(0, |estimate| estimate.samples);
     let (mut batches, mut next_look, mut kept) = (0, 2, start);
@@ -127,7 +128,7 @@ pub fn converge(
         let left = (done > 0.0).then(|| elapsed.as_secs_f64() * missing / (samples - first) as f64);
         watch(Step { samples, done: done.min(1.0), left }, None)?;
         let look = until.error.is_some() && (batches >= next_look || done >= 1.0);
-        let keep = kept.elapsed() > KEEP;
+        let keep = kept.elapsed() > (elapsed / 3).clamp(KEEP[0], KEEP[1]);
         if batches < 2 || !(look || keep || done >= 1.0) {
             continue;
         }

@@ -12,6 +12,7 @@ use crate::picture::{self, Curve};
 use crate::problem::{Problem, Result};
 use crate::reference::Cache;
 use crate::report;
+use crate::scene::features;
 use clap::Args;
 use indicatif::ProgressBar;
 use std::fmt::Write;
@@ -24,6 +25,7 @@ pub struct CompareArgs {
     #[arg(required = true)]
     scenes: Vec<PathBuf>,
     /// A pipeline, with knobs and parts of its own: NAME, NAME,KNOB=VALUE, NAME,KNOB=VALUE,ROLE=PART. May be repeated.
+    /// NAME,scene.emissive=false leaves an effect out that the scene calls for.
     #[arg(short, long = "pipeline", value_name = "NAME[,KEY=VALUE…]", required = true)]
     pipelines: Vec<String>,
     /// Set a knob in all pipelines; may be repeated.
@@ -173,11 +175,11 @@ fn watch(bar: &mut Option<(String, ProgressBar)>, doing: &Doing) {
     }
 }
 
-/// `NAME,KEY=VALUE,…`: a key is a role where it names one of the pipeline's, else a knob.
+/// `NAME,KEY=VALUE,…`: a key is a role where it names one of the pipeline's, or an effect's flag, else a knob.
 pub fn subject(text: &str, library: &Library) -> Result<Subject> {
     let mut pieces = text.split(',');
     let pipeline = pieces.next().unwrap_or_default().to_owned();
-    let mut subject = Subject { pipeline, parts: Vec::new(), sets: Vec::new() };
+    let mut subject = Subject { pipeline, parts: Vec::new(), sets: Vec::new(), effects: Vec::new() };
     for piece in pieces {
         let (key, value) = super::pair(piece).map_err(|why| {
             Problem::input("pipeline-option", format!("in `{text}`: {why}"))
@@ -189,15 +191,17 @@ pub fn subject(text: &str, library: &Library) -> Result<Subject> {
 }
 
 impl Subject {
-    /// Sets a knob, or puts a part into a role.
+    /// Sets a knob, puts a part into a role, or says whether an effect is simulated.
     pub fn add(&mut self, key: String, value: String, library: &Library) -> Result<()> {
         let document = crate::document::parse(&library.pipeline(&self.pipeline)?)?;
         let crate::document::Root::Pipeline { parts, .. } = &document.root else { return Ok(()) };
         let is_role = parts.iter().any(|(role, _)| role.value == key);
-        if is_role {
-            self.parts.push((key, value))
-        } else {
-            self.sets.push((key, value))
+        match value.parse() {
+            _ if is_role => self.parts.push((key, value)),
+            Ok(simulated) if features::effects().any(|flag| flag == key) => {
+                self.effects.push((key, simulated))
+            }
+            _ => self.sets.push((key, value)),
         }
         Ok(())
     }

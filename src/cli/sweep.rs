@@ -6,6 +6,7 @@ use crate::compare::{Axis, Order, diff, expand, merge, shard};
 use crate::comparison::Comparison;
 use crate::problem::{Problem, Result};
 use crate::report::analysis::{cheapest_within, marginals, points};
+use crate::scene::features;
 use clap::Args;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -24,7 +25,10 @@ pub struct SweepArgs {
     /// Parts of a role; may be repeated for others.
     #[arg(long = "part", value_name = "ROLE=PART,PART…", value_parser = super::pair)]
     parts: Vec<(String, String)>,
-    /// One knob or role at a time, the others at their first value. Default: every combination.
+    /// An effect that the scenes call for, by its flag, such as scene.emissive: simulated and left out. May be repeated.
+    #[arg(long = "effect", value_name = "FLAG", value_parser = effect)]
+    effects: Vec<String>,
+    /// One knob, role or effect at a time, the others at their first value. Default: every combination.
     #[arg(long)]
     one_at_a_time: bool,
     /// How often each setting is run, on a device of its own each time.
@@ -71,23 +75,27 @@ fn part_of(text: &str) -> Result<(usize, usize), String> {
     pair.filter(|(k, n)| (1..=*n).contains(k)).ok_or_else(|| format!("`{text}` is no part such as 2/8"))
 }
 
+fn effect(text: &str) -> Result<String, String> {
+    match features::effects().any(|known| known == text) {
+        true => Ok(text.to_owned()),
+        false => Err(format!(
+            "`{text}` is no effect: there are {}",
+            features::effects().collect::<Vec<_>>().join(", ")
+        )),
+    }
+}
+
 pub fn sweep(args: &SweepArgs) -> Result<()> {
     let library = args.common.library()?;
     let base = subject(&args.pipeline, &library)?;
-    let axis = |(key, values): &(String, String), role| Axis {
-        key: key.clone(),
-        role,
-        values: values.split(',').map(str::to_owned).collect(),
-    };
-    let axes: Vec<Axis> = args
-        .parts
-        .iter()
-        .map(|axis_| axis(axis_, true))
-        .chain(args.sets.iter().map(|axis_| axis(axis_, false)))
-        .collect();
+    let values = |values: &str| values.split(',').map(str::to_owned).collect();
+    let parts = args.parts.iter().map(|(role, parts)| Axis::Part(role.clone(), values(parts)));
+    let knobs = args.sets.iter().map(|(knob, sets)| Axis::Knob(knob.clone(), values(sets)));
+    let effects = args.effects.iter().map(|flag| Axis::Effect(flag.clone()));
+    let axes: Vec<Axis> = parts.chain(knobs).chain(effects).collect();
     for (index, axis) in axes.iter().enumerate() {
-        if axes[..index].iter().any(|other| other.key == axis.key) {
-            let message = format!("`{}` is swept twice", axis.key);
+        if axes[..index].iter().any(|other| other.key() == axis.key()) {
+            let message = format!("`{}` is swept twice", axis.key());
             return Err(Problem::input("swept-twice", message)
                 .help("give all its values in one list")
                 .into());

@@ -8,6 +8,7 @@ use crate::picture::Picture;
 use crate::problem::{Problem, Result};
 use crate::record::{self, Samples};
 use crate::scene::Scene;
+use crate::scene::features::{self, Feature};
 use crate::session::{Prepared, Request, prepare};
 use std::collections::BTreeMap;
 
@@ -18,6 +19,8 @@ pub struct Subject {
     pub parts: Vec<(String, String)>,
     /// Knob and value.
     pub sets: Vec<(String, String)>,
+    /// The flag of an effect that the scene calls for, such as `scene.emissive`, and whether it is simulated.
+    pub effects: Vec<(String, bool)>,
 }
 
 /// What a run gave.
@@ -37,13 +40,37 @@ pub struct Done {
 impl Subject {
     /// The pipeline, and what is not its default.
     pub fn name(&self) -> String {
-        let all = self.parts.iter().chain(&self.sets).map(|(key, value)| format!("{key}={value}"));
+        let all = self.settings().map(|(key, value)| format!("{key}={value}"));
         std::iter::once(self.pipeline.clone()).chain(all).collect::<Vec<_>>().join(", ")
     }
 
     /// The coordinates in which subjects differ.
     pub fn coordinates(&self) -> BTreeMap<String, String> {
-        self.parts.iter().chain(&self.sets).cloned().collect()
+        self.settings().collect()
+    }
+
+    fn settings(&self) -> impl Iterator<Item = (String, String)> {
+        let effects = self.effects.iter().map(|(name, simulated)| (name.clone(), simulated.to_string()));
+        self.parts.iter().chain(&self.sets).cloned().chain(effects)
+    }
+
+    /// What conditions are told in place of the scene's own features.
+    fn claims(&self, scene: &Scene) -> Result<Vec<(&'static str, Feature)>> {
+        let mut claims = Vec::new();
+        for (name, simulated) in &self.effects {
+            let without = features::without(scene, name).ok_or_else(|| {
+                let present: Vec<&str> =
+                    features::effects().filter(|name| features::without(scene, name).is_some()).collect();
+                Problem::input("no-effect", format!("`{}` has nothing of `{name}`", scene.name)).help(
+                    match present.is_empty() {
+                        true => "there is no effect in it that can be left out".to_owned(),
+                        false => format!("it has {}", present.join(", ")),
+                    },
+                )
+            })?;
+            claims.extend(without.into_iter().filter(|_| !simulated));
+        }
+        Ok(claims)
     }
 
     pub(super) fn prepare(&self, plan: &Plan, library: &Library, scene: &Scene) -> Result<Prepared> {
@@ -53,6 +80,7 @@ impl Subject {
             parts: self.parts.clone(),
             size: plan.size,
             camera: plan.camera,
+            claims: self.claims(scene)?,
             ..Request::default()
         };
         let prepared = prepare(&request, library, Some(scene))?;
@@ -96,12 +124,14 @@ impl Subject {
             }
         }
         let (graph, memory) = (&frame.graph, record::memory(&frame));
+        let left_out = self.effects.iter().filter(|(_, simulated)| !simulated);
+        let left_out = left_out.map(|(name, _)| format!("`{name}` is left out, as asked"));
         Ok(Done {
             stages: record::stages(&frame, &samples),
             knobs: graph.plan.knobs.iter().map(|k| (k.path.clone(), record::value(&k.value))).collect(),
             parts: graph.plan.parts.clone(),
             peak_bytes: memory.peak_bytes + memory.kept_bytes,
-            lacks: record::lacks(scene, graph),
+            lacks: record::lacks(scene, graph).into_iter().chain(left_out).collect(),
             samples,
             clock,
             pictures,

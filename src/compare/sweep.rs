@@ -3,13 +3,39 @@
 use super::Subject;
 use crate::problem::{Problem, Result};
 
-/// A knob or a role, and the values that it takes.
+/// Along what a sweep goes.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Axis {
-    pub key: String,
-    /// Whether it is a role, whose values are parts.
-    pub role: bool,
-    pub values: Vec<String>,
+pub enum Axis {
+    /// Its name and values.
+    Knob(String, Vec<String>),
+    /// A role, and the parts that take it.
+    Part(String, Vec<String>),
+    /// The flag of an effect, which is simulated and left out.
+    Effect(String),
+}
+
+impl Axis {
+    pub fn key(&self) -> &str {
+        match self {
+            Self::Knob(key, _) | Self::Part(key, _) | Self::Effect(key) => key,
+        }
+    }
+
+    /// How many values it has.
+    fn count(&self) -> usize {
+        match self {
+            Self::Knob(_, values) | Self::Part(_, values) => values.len(),
+            Self::Effect(_) => 2,
+        }
+    }
+
+    fn set(&self, value: usize, subject: &mut Subject) {
+        match self {
+            Self::Knob(key, values) => subject.sets.push((key.clone(), values[value].clone())),
+            Self::Part(key, values) => subject.parts.push((key.clone(), values[value].clone())),
+            Self::Effect(key) => subject.effects.push((key.clone(), value == 0)),
+        }
+    }
 }
 
 /// Which of all settings are run.
@@ -27,8 +53,8 @@ const MOST: usize = 10_000;
 /// All settings of the axes, on top of `base`; each once.
 pub fn expand(base: &Subject, axes: &[Axis], order: Order) -> Result<Vec<Subject>> {
     let count = match order {
-        Order::Grid => axes.iter().try_fold(1_usize, |count, axis| count.checked_mul(axis.values.len())),
-        Order::OneAtATime => Some(axes.iter().map(|axis| axis.values.len()).sum()),
+        Order::Grid => axes.iter().try_fold(1_usize, |count, axis| count.checked_mul(axis.count())),
+        Order::OneAtATime => Some(axes.iter().map(Axis::count).sum()),
     };
     if count.is_none_or(|count| count > MOST) {
         let message = format!("the sweep has more than {MOST} settings");
@@ -44,7 +70,7 @@ pub fn expand(base: &Subject, axes: &[Axis], order: Order) -> Result<Vec<Subject
         };
         let skipped = usize::from(order == Order::OneAtATime);
         for setting in from {
-            settings.extend((skipped..axis.values.len()).map(|value| {
+            settings.extend((skipped..axis.count()).map(|value| {
                 let mut setting = setting.clone();
                 setting[index] = value;
                 setting
@@ -54,8 +80,7 @@ pub fn expand(base: &Subject, axes: &[Axis], order: Order) -> Result<Vec<Subject
     let subject = |setting: Vec<usize>| {
         let mut subject = base.clone();
         for (axis, value) in axes.iter().zip(setting) {
-            let list = if axis.role { &mut subject.parts } else { &mut subject.sets };
-            list.push((axis.key.clone(), axis.values[value].clone()));
+            axis.set(value, &mut subject);
         }
         subject
     };
@@ -73,16 +98,17 @@ mod tests {
     use std::collections::BTreeSet;
 
     fn axes() -> Vec<Axis> {
-        let axis = |key: &str, role, values: &[&str]| Axis {
-            key: key.to_owned(),
-            role,
-            values: values.iter().map(|v| (*v).to_owned()).collect(),
-        };
-        vec![axis("a", false, &["1", "2", "3"]), axis("r", true, &["x", "y"]), axis("b", false, &["7"])]
+        let texts = |values: &[&str]| values.iter().map(|v| (*v).to_owned()).collect();
+        vec![
+            Axis::Knob("a".to_owned(), texts(&["1", "2", "3"])),
+            Axis::Part("r".to_owned(), texts(&["x", "y"])),
+            Axis::Knob("b".to_owned(), texts(&["7"])),
+        ]
     }
 
     fn base() -> Subject {
-        Subject { pipeline: "p".to_owned(), parts: Vec::new(), sets: vec![("c".to_owned(), "0".to_owned())] }
+        let sets = vec![("c".to_owned(), "0".to_owned())];
+        Subject { pipeline: "p".to_owned(), parts: Vec::new(), sets, effects: Vec::new() }
     }
 
     fn names(subjects: &[Subject]) -> Vec<String> {
@@ -110,6 +136,18 @@ mod tests {
     }
 
     #[test]
+    fn effects_are_simulated_and_left_out() {
+        let axes = [axes()[1].clone(), Axis::Effect("scene.emissive".to_owned())];
+        let all = names(&expand(&base(), &axes, Order::OneAtATime).expect("a few"));
+        let expected = [
+            "p, r=x, c=0, scene.emissive=true",
+            "p, r=y, c=0, scene.emissive=true",
+            "p, r=x, c=0, scene.emissive=false",
+        ];
+        assert_eq!(all, expected);
+    }
+
+    #[test]
     fn shards_share_out_all_of_them() {
         let all = expand(&base(), &axes(), Order::Grid).expect("a few");
         let shards: Vec<Subject> = (1..=4).flat_map(|number| shard(all.clone(), number, 4)).collect();
@@ -121,7 +159,7 @@ mod tests {
     fn endless_sweeps_are_refused() {
         let mut axes = axes();
         for axis in &mut axes {
-            axis.values = (0..100).map(|v| v.to_string()).collect();
+            *axis = Axis::Knob(axis.key().to_owned(), (0..100).map(|v| v.to_string()).collect());
         }
         assert!(expand(&base(), &axes, Order::Grid).is_err());
         assert!(expand(&base(), &axes, Order::OneAtATime).is_ok());

@@ -159,7 +159,7 @@ fn table(view: &View, scene: &SceneView, output: &str, measure: &Measure) -> Mar
                     (output)
                 }
                 thead { tr {
-                    th scope="col" { "knob or part" }
+                    th scope="col" { "knob, part or effect" }
                     th scope="col" { "step" }
                     th scope="col" class="n" { "pairs" }
                     th scope="col" class="n" { "time +" }

@@ -110,17 +110,22 @@ features! { scene, used;
     "cameras.total" Number "Number of cameras." = scene.cameras.len() as f64;
 }
 
-/// What a scene can have an effect of, and what conditions are told of one that has it: the features that differ from
-/// those of a scene without.
-const EFFECTS: &[(&str, &[(&str, Feature)])] = &[
-    ("scene.emissive", &[("scene.max_emission", Feature::Number(1.0))]),
-    ("scene.textured", &[]),
-    ("scene.roughness_textured", &[]),
-    ("scene.normal_mapped", &[("scene.vertex_extras", Feature::Flag(true))]),
-    ("scene.second_uv", &[("scene.vertex_extras", Feature::Flag(true))]),
-    ("scene.vertex_colors", &[("scene.vertex_extras", Feature::Flag(true))]),
-    ("scene.masked", &[]),
-    ("scene.moving", &[]),
+/// Of an effect: its flag, and what conditions are told besides of a scene that has it, and of one that has not.
+type Effect = (&'static str, &'static [(&'static str, Feature)], &'static [(&'static str, Feature)]);
+
+const EFFECTS: &[Effect] = &[
+    (
+        "scene.emissive",
+        &[("scene.max_emission", Feature::Number(1.0))],
+        &[("scene.max_emission", Feature::Number(0.0))],
+    ),
+    ("scene.textured", &[], &[]),
+    ("scene.roughness_textured", &[], &[]),
+    ("scene.normal_mapped", &[("scene.vertex_extras", Feature::Flag(true))], &[]),
+    ("scene.second_uv", &[("scene.vertex_extras", Feature::Flag(true))], &[]),
+    ("scene.vertex_colors", &[("scene.vertex_extras", Feature::Flag(true))], &[]),
+    ("scene.masked", &[], &[]),
+    ("scene.moving", &[], &[]),
     (
         "scene.environment",
         &[
@@ -128,15 +133,32 @@ const EFFECTS: &[(&str, &[(&str, Feature)])] = &[
             ("scene.environment_height", Feature::Number(1.0)),
             ("scene.environment_levels", Feature::Number(1.0)),
         ],
+        &[
+            ("scene.environment_width", Feature::Number(0.0)),
+            ("scene.environment_height", Feature::Number(0.0)),
+            ("scene.environment_levels", Feature::Number(0.0)),
+        ],
     ),
 ];
+
+/// The flags of all effects.
+pub fn effects() -> impl Iterator<Item = &'static str> {
+    EFFECTS.iter().map(|(name, ..)| *name)
+}
+
+/// What conditions are told to leave the effect `name` out. `None` if `scene` has nothing of it, or there is none.
+pub fn without(scene: &Scene, name: &str) -> Option<Vec<(&'static str, Feature)>> {
+    let (name, _, others) = EFFECTS.iter().find(|(known, ..)| *known == name)?;
+    let present = features(scene).contains(&(*name, Feature::Flag(true)));
+    present.then(|| [(*name, Feature::Flag(false))].iter().chain(*others).copied().collect())
+}
 
 /// For each effect that `scene` has nothing of, its flag's name and the features of a scene that has some.
 pub fn missing_effects(scene: &Scene) -> Vec<(&'static str, Vec<(&'static str, Feature)>)> {
     let features = features(scene);
-    let missing = EFFECTS.iter().filter(|(name, _)| features.contains(&(*name, Feature::Flag(false))));
+    let missing = EFFECTS.iter().filter(|(name, ..)| features.contains(&(*name, Feature::Flag(false))));
     missing
-        .map(|(name, others)| {
+        .map(|(name, others, _)| {
             (*name, [(*name, Feature::Flag(true))].iter().chain(*others).copied().collect())
         })
         .collect()

@@ -3,7 +3,8 @@
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
 /// A place of its own: references and runs of other tests are not seen.
@@ -180,6 +181,36 @@ fn a_comparison_goes_on_where_it_stopped() {
 }
 
 #[test]
+fn a_reference_that_was_interrupted_is_gone_on_with() {
+    let bench = Bench::new();
+    let scene = scene();
+    let compare = |samples: &str| {
+        let mut arguments = [&["compare", scene.as_str(), "-p", "cones,resolution=16"], &SMALL[..]].concat();
+        let place = arguments.iter().position(|argument| *argument == "32").expect("the samples");
+        arguments[place] = samples;
+        arguments.into_iter().map(str::to_owned).collect::<Vec<_>>()
+    };
+    let mut long = Command::new(env!("CARGO_BIN_EXE_voxgi"));
+    long.args(compare("100000000")).env("VOXGI_CACHE", bench.path("cache")).current_dir(bench.folder.path());
+    let mut long = long.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program");
+    let kept = || {
+        let folders = std::fs::read_dir(bench.path("cache/references")).into_iter().flatten().flatten();
+        { folders }.any(|folder| folder.path().join("estimate.json").is_file())
+    };
+    let begun = Instant::now();
+    while !kept() && begun.elapsed() < Duration::from_secs(120) {
+        assert!(long.try_wait().expect("its state").is_none(), "it would take hours");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    long.kill().expect("interrupted");
+    long.wait().expect("ended");
+    let arguments = compare("32");
+    let after = bench.json(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    assert!(after["reference"]["cached_samples"].as_u64().is_some_and(|n| n >= 32), "{}", after["reference"]);
+    assert_eq!(after["reference"]["samples"], after["reference"]["cached_samples"]);
+}
+
+#[test]
 fn shards_of_a_sweep_come_to_the_whole() {
     let bench = Bench::new();
     let scene = scene();
@@ -233,6 +264,30 @@ fn sweeps_say_what_each_step_costs_and_brings() {
     let runs: Vec<_> = std::fs::read_dir(bench.path("runs")).expect("runs").flatten().collect();
     assert_eq!(runs.len(), 1, "a folder with date and name");
     assert!(runs[0].file_name().to_string_lossy().ends_with("-sweep-cornell-point"));
+}
+
+#[test]
+fn sweeps_say_what_an_effect_costs_and_brings() {
+    let bench = Bench::new();
+    let lamp = shipped("scenes/cornell-box.glb").display().to_string();
+    let sweep = ["sweep", &lamp, "-p", "cones,resolution=16", "--effect", "scene.emissive", "--repeats", "1"];
+    let comparison = bench.json(&[&sweep[..], &SMALL].concat());
+    let (with, without) = ("cones, resolution=16, scene.emissive=true", "cones, resolution=16, scene.emissive=false");
+    let bias = |name: &str| run(&comparison, name)["errors"]["color"]["bias"].as_f64().expect("a bias");
+    assert!(bias(with) > 0.5, "the lamp shines: {}", bias(with));
+    assert_eq!(bias(without), 0.0, "nothing else does");
+    let left_out = |name: &str| run(&comparison, name)["lacks"].to_string().contains("scene.emissive");
+    assert_eq!((left_out(with), left_out(without)), (false, true));
+    let ran = |name: &str| {
+        let stages = run(&comparison, name)["stages"].as_array().expect("stages").clone();
+        stages.iter().filter(|s| s["status"] == "run").map(|s| s["path"].to_string()).collect::<BTreeSet<_>>()
+    };
+    assert!(ran(without).is_subset(&ran(with)));
+    assert!(ran(with).iter().any(|path| path.contains("mipmap_emitted") && !ran(without).contains(path)));
+    let sky = ["sweep", &lamp, "-p", "cones", "--effect", "scene.environment"];
+    assert_eq!(bench.refused(&[&sky[..], &SMALL].concat()), (Some(2), "no-effect".to_owned()));
+    let unknown = ["compare", &lamp, "-p", "cones,scene.emissive=perhaps"];
+    assert_eq!(bench.refused(&[&unknown[..], &SMALL].concat()), (Some(2), "unknown-knob".to_owned()));
 }
 
 #[test]
