@@ -40,9 +40,8 @@ fn environment_texel_density(column: u32, row: u32) -> f32 {
     let width = scene.environment_width;
     let probability = environment_part(scene.environment_rows, row, false).x
         * environment_part(row * width, column, true).x;
-    let height = f32(scene.environment_height);
-    let bottom = cos(PI * f32(row + 1u) / height);
-    let solid_angle = 2.0 * PI / f32(width) * (cos(PI * f32(row) / height) - bottom);
+    let half_row = 0.5 * PI / f32(scene.environment_height);
+    let solid_angle = 4.0 * PI / f32(width) * sin(f32(2u * row + 1u) * half_row) * sin(half_row);
     return probability / solid_angle;
 }
 
@@ -56,10 +55,19 @@ fn environment_choose(random: vec2f) -> vec4f {
     let along = environment_part(row * width, column, true);
     let y = clamp((random.y - down.y) / max(down.x, 1e-12), 0.0, 1.0);
     let x = clamp((random.x - along.y) / max(along.x, 1e-12), 0.0, 1.0);
-    let cosine = mix(cos(PI * f32(row) / f32(height)), cos(PI * f32(row + 1u) / f32(height)), y);
+    // Heights below the nearer pole: those above the equator's plane lose precision there.
+    let lower = 2u * row >= height;
+    let from_pole = select(row, height - 1u - row, lower);
+    let ends = sin(0.5 * PI / f32(height) * vec2f(f32(from_pole), f32(from_pole + 1u)));
+    let below = 2.0 * mix(ends.x * ends.x, ends.y * ends.y, select(y, 1.0 - y, lower));
     let around = 2.0 * PI * ((f32(column) + x) / f32(width) - 0.5) + scene.environment_turn;
-    let sine = sqrt(max(1.0 - cosine * cosine, 0.0));
-    return vec4f(sine * sin(around), cosine, -sine * cos(around), environment_texel_density(column, row));
+    let sine = sqrt(below * (2.0 - below));
+    return vec4f(
+        sine * sin(around),
+        select(1.0 - below, below - 1.0, lower),
+        -sine * cos(around),
+        environment_texel_density(column, row),
+    );
 }
 
 /// Density of `environment_choose` for a direction.

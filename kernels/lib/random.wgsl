@@ -19,13 +19,15 @@ fn hash_2(x: u32, y: u32) -> u32 {
 
 const BELOW_ONE: f32 = 0.99999994;
 
-/// x · count, as multiples of 2^32 and the rest: one of `count` by a random word, and a random word again.
+/// x · count, as multiples of 2^32 and the rest: one of `count` by a random word, and a random word again. The rest comes
+/// in steps of `count`; it is the middle of its step.
 fn scaled(x: u32, count: u32) -> vec2u {
     let a = vec2u(x & 0xffffu, x >> 16u);
     let b = vec2u(count & 0xffffu, count >> 16u);
     let one = a.y * b.x + ((a.x * b.x) >> 16u);
     let other = a.x * b.y + (one & 0xffffu);
-    return vec2u(a.y * b.y + (one >> 16u) + (other >> 16u), x * count);
+    let rest = x * count;
+    return vec2u(a.y * b.y + (one >> 16u) + (other >> 16u), rest + min(count / 2u, ~rest));
 }
 
 /// [0, 1).

@@ -1,6 +1,6 @@
-// How surfaces reflect: Lambert, or glTF's metallic-roughness model (glTF 2.0, appendix B: Lambert below a dielectric
-// coat of refractive index 1.5, or a metal; GGX with Smith's separable shadowing, Schlick's Fresnel), and directions chosen
-// by it. No clamp; roughness is at least 0.03, below which single floats fail.
+// How surfaces reflect: Lambert, or glTF's metallic-roughness model (glTF 2.0, appendix B.3: Lambert below a dielectric
+// coat of refractive index 1.5, and a metal, mixed; GGX with Smith's separable shadowing, Schlick's Fresnel), and directions
+// chosen by it. No clamp; roughness is at least 0.03, below which single floats fail.
 //
 // Directions are unit vectors away from the surface, seen from the shading normal `n`.
 
@@ -9,6 +9,9 @@ import lib/math;
 
 /// Roughness squared, at least.
 const LEAST_ALPHA: f32 = 0.0009;
+
+/// What a dielectric reflects of light that arrives along its normal.
+const COAT: f32 = 0.04;
 
 struct Reflecting {
     n: vec3f,
@@ -39,7 +42,7 @@ fn reflecting(n: vec3f, plane: vec3f, to_viewer: vec3f, albedo: vec3f, metallic:
     out.diffuse = albedo;
     @if(!diffuse_only) {
         out.diffuse = albedo * (1.0 - metallic);
-        out.f0 = mix(vec3f(0.04), albedo, metallic);
+        out.f0 = mix(vec3f(COAT), albedo, metallic);
         out.alpha = max(roughness * roughness, LEAST_ALPHA);
         let f = luminance(fresnel(out.f0, max(dot(n, to_viewer), 0.0)));
         let rest = luminance(out.diffuse) * (1.0 - f);
@@ -95,9 +98,11 @@ fn reflected(r: Reflecting, to_light: vec3f) -> Reflected {
             out.density = 0.5 * d * view_smith * r.glossy;
         }
         if seen {
-            let f = fresnel(r.f0, dot(r.to_viewer, half_vector));
-            let gloss = d * view_smith * smith(r.alpha, cosine) * f;
-            out.value = (1.0 - f) * r.diffuse * cosine_density + gloss * cosine;
+            let half_way = dot(r.to_viewer, half_vector);
+            let gloss = d * view_smith * smith(r.alpha, cosine) * fresnel(r.f0, half_way);
+            // What the metal reflects does not dim the rest beside it.
+            let coat = fresnel(vec3f(COAT), half_way);
+            out.value = (1.0 - coat) * r.diffuse * cosine_density + gloss * cosine;
         }
     }
     return out;

@@ -86,11 +86,11 @@ impl Environment {
 
     fn add_probabilities(&mut self) {
         let (width, height) = (self.width as usize, self.height as usize);
-        let luminance = |texel: &Vec4| f64::from(texel.truncate().dot(Vec3::new(0.2126, 0.7152, 0.0722)));
+        let luminances = self.bilinear_luminances();
         let angle = |row: usize| (row as f64 / height as f64 * std::f64::consts::PI).cos();
         let mut rows = Vec::with_capacity(height);
         for (y, row) in self.texels[..width * height].chunks_exact_mut(width).enumerate() {
-            let sums: Vec<f64> = running(row.iter().map(luminance));
+            let sums = running(luminances[y * width..][..width].iter().copied());
             let total = sums.last().copied().unwrap_or(0.0);
             for (x, (texel, sum)) in row.iter_mut().zip(&sums).enumerate() {
                 // A black row is never chosen.
@@ -104,6 +104,24 @@ impl Environment {
         self.texels.extend(
             sums.into_iter().enumerate().map(|row| Vec4::new(probability(row) as f32, 0.0, 0.0, 0.0)),
         );
+    }
+
+    /// Mean luminance over each texel of the first level, as it is looked up: bilinearly, so that a texel has an eighth
+    /// of each neighbour's along either axis.
+    fn bilinear_luminances(&self) -> Vec<f64> {
+        let (width, height) = (self.width as usize, self.height as usize);
+        let luminance = |texel: &Vec4| f64::from(texel.truncate().dot(Vec3::new(0.2126, 0.7152, 0.0722)));
+        let own: Vec<f64> = self.texels[..width * height].iter().map(luminance).collect();
+        let spread = |from: &[f64], before: &dyn Fn(usize) -> usize, after: &dyn Fn(usize) -> usize| {
+            let mean = |at| 0.75 * from[at] + 0.125 * (from[before(at)] + from[after(at)]);
+            (0..from.len()).map(mean).collect::<Vec<f64>>()
+        };
+        let along = |at: usize, by: usize| at / width * width + (at + by) % width;
+        let rows = spread(&own, &|at| along(at, width - 1), &|at| along(at, 1));
+        let last = width * (height - 1);
+        spread(&rows, &|at| if at < width { at } else { at - width }, &|at| {
+            if at < last { at + width } else { at }
+        })
     }
 
     /// Index of the element of the first row.

@@ -272,7 +272,8 @@ fn sweeps_say_what_an_effect_costs_and_brings() {
     let lamp = shipped("scenes/cornell-box.glb").display().to_string();
     let sweep = ["sweep", &lamp, "-p", "cones,resolution=16", "--effect", "scene.emissive", "--repeats", "1"];
     let comparison = bench.json(&[&sweep[..], &SMALL].concat());
-    let (with, without) = ("cones, resolution=16, scene.emissive=true", "cones, resolution=16, scene.emissive=false");
+    let (with, without) =
+        ("cones, resolution=16, scene.emissive=true", "cones, resolution=16, scene.emissive=false");
     let bias = |name: &str| run(&comparison, name)["errors"]["color"]["bias"].as_f64().expect("a bias");
     assert!(bias(with) > 0.5, "the lamp shines: {}", bias(with));
     assert_eq!(bias(without), 0.0, "nothing else does");

@@ -1,4 +1,4 @@
-//! Glossy surfaces against glTF's metallic-roughness model (glTF 2.0, appendix B), written anew in double precision:
+//! Glossy surfaces against glTF's metallic-roughness model (glTF 2.0, appendix B.3), written anew in double precision:
 //! value by
 //! value, lit by a directional light, which has no noise; and summed over all directions, in an even sky.
 //!
@@ -29,9 +29,11 @@ enum Flaw {
     Doubled,
     /// Fresnel's share at the surface's normal.
     Normal,
+    /// What metal reflects dims the dielectric beside it.
+    Dimmed,
 }
 
-const FLAWS: [Flaw; 4] = [Flaw::Linear, Flaw::OneShadow, Flaw::Doubled, Flaw::Normal];
+const FLAWS: [Flaw; 5] = [Flaw::Linear, Flaw::OneShadow, Flaw::Doubled, Flaw::Normal, Flaw::Dimmed];
 
 #[derive(Clone, Copy)]
 struct Gloss {
@@ -45,9 +47,10 @@ impl Gloss {
         if self.flaw == Flaw::Linear { self.roughness } else { self.roughness.powi(2) }
     }
 
-    fn fresnel(&self, cosine: f64) -> DVec3 {
-        let f0 = DVec3::splat(0.04).lerp(BASE, self.metallic);
-        f0 + (1.0 - f0) * (1.0 - cosine.abs()).powi(5)
+    /// Schlick's, of the coat and of the metal.
+    fn fresnel(&self, v: DVec3, h: DVec3) -> [DVec3; 2] {
+        let cosine = if self.flaw == Flaw::Normal { v.y } else { v.dot(h) };
+        [DVec3::splat(0.04), BASE].map(|f0| f0 + (1.0 - f0) * (1.0 - cosine.abs()).powi(5))
     }
 
     /// Smith's shadowing in one direction, by the tangent of its angle.
@@ -61,14 +64,20 @@ impl Gloss {
         self.shadow(v.y) * one
     }
 
-    /// Of the diffuse base below the coat.
-    fn diffuse(&self, share: DVec3) -> DVec3 {
-        let share = if self.flaw == Flaw::Doubled { DVec3::ZERO } else { share };
-        (1.0 - share) * BASE * (1.0 - self.metallic) / PI
+    /// Of the dielectric's base below the coat.
+    fn diffuse(&self, v: DVec3, h: DVec3) -> DVec3 {
+        let lost = match self.flaw {
+            Flaw::Doubled => DVec3::ZERO,
+            Flaw::Dimmed => self.share(v, h),
+            _ => self.fresnel(v, h)[0],
+        };
+        (1.0 - lost) * BASE * (1.0 - self.metallic) / PI
     }
 
+    /// What is mirrored by a facet: a mixture of dielectric and metal.
     fn share(&self, v: DVec3, h: DVec3) -> DVec3 {
-        self.fresnel(if self.flaw == Flaw::Normal { v.y } else { v.dot(h) })
+        let [coat, metal] = self.fresnel(v, h);
+        coat * (1.0 - self.metallic) + metal * self.metallic
     }
 
     /// Reflected radiance to irradiance; y is the normal.
@@ -76,8 +85,7 @@ impl Gloss {
         let h = (v + l).normalize();
         let a2 = self.alpha().powi(2);
         let d = a2 / (PI * (h.y * h.y * (a2 - 1.0) + 1.0).powi(2));
-        let share = self.share(v, h);
-        self.diffuse(share) + share * (d * self.shadows(v, l) / (4.0 * v.y * l.y))
+        self.diffuse(v, h) + self.share(v, h) * (d * self.shadows(v, l) / (4.0 * v.y * l.y))
     }
 
     /// Its integral times the cosine of `l`: the mirrored part over half vectors as dense as D times their cosine, the
@@ -100,7 +108,7 @@ impl Gloss {
                 sum += self.share(v, h) * (self.shadows(v, l) * v.dot(h) / (v.y * h.y) * weight);
             }
             let l = around((1.0 - a).sqrt());
-            sum += self.diffuse(self.share(v, (v + l).normalize())) * PI;
+            sum += self.diffuse(v, (v + l).normalize()) * PI;
         }
         sum / f64::from(STEPS * STEPS)
     }

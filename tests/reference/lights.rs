@@ -1,5 +1,6 @@
 //! A Lambert floor below lights of each kind, and below an emitting rectangle, point by point.
 
+use super::flaws::flawed;
 use super::shot::{Shot, mean, mean_where};
 use super::stage::{Stage, directional, lamp, matt, point, quad, spot};
 use glam::{DVec3, Vec3};
@@ -181,4 +182,30 @@ fn parallel_plates_have_their_form_factor() {
     let found = Shot::of(&scene).take();
     mean(&found, "color").expect("plates", radiance(form_factor()), &mistakes);
     assert_eq!(mean(&found, "indirect").value, DVec3::ZERO, "the lamp reflects nothing");
+}
+
+/// A choice among so many emitters leaves few bits of a random number: one of them must not suffer for it.
+#[test]
+fn a_light_among_many_emitters_keeps_its_share() {
+    const SIDE: u16 = 256;
+    let at = |i: u16| f32::from(i) / f32::from(SIDE) - 0.5;
+    // Below the floor, and facing down.
+    let lamps = (0..SIDE).flat_map(|x| {
+        (0..SIDE).map(move |z| {
+            let a = Vec3::new(at(x), -0.5, at(z));
+            [a, a + Vec3::X * 0.003, a + Vec3::Z * 0.003]
+        })
+    });
+    let below = lamp(Vec3::splat(40.0));
+    let stage = floor().light(directional(Vec3::NEG_Y, Vec3::ONE));
+    let scene = seen(stage.surface(&lamps.collect::<Vec<_>>(), below));
+    let shot = Shot::of(&scene).set("max_scatterings", 1);
+    mean(&shot.take(), "color").expect("one of many", ALBEDO / PI, &[]);
+    let coarse = flawed(
+        "lib/emitters",
+        "let rest = unit_of(column.y);",
+        "let rest = floor(unit_of(column.y) * 256.0) / 256.0;",
+    );
+    let found = mean(&shot.by(&coarse.library).take(), "color");
+    assert!(!found.agrees(ALBEDO / PI), "8 bits for the share: {found:?}");
 }

@@ -42,7 +42,12 @@ fn texel(row: usize, column: usize) -> DVec3 {
 }
 
 fn sky() -> Environment {
-    let texels = (0..WIDTH * HEIGHT).flat_map(|i| texel(i / WIDTH, i % WIDTH).as_vec3().to_array());
+    pictured(|i| texel(i / WIDTH, i % WIDTH))
+}
+
+/// Texels row by row.
+fn pictured(texel: impl Fn(usize) -> DVec3) -> Environment {
+    let texels = (0..WIDTH * HEIGHT).flat_map(|i| texel(i).as_vec3().to_array());
     let picture = Picture::new(WIDTH as u32, HEIGHT as u32, 3, texels.collect()).expect("a picture");
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("sky.exr");
@@ -96,6 +101,18 @@ fn a_pictured_sky_lights_as_it_is() {
         flawed("lib/environment_choice", "probability / solid_angle", "probability / (4.0 * PI) * 128.0");
     let found = mean(&Shot::of(&scene).by(&wrong.library).take(), "color");
     assert!(!found.agrees(right), "texels of the same solid angle: {found:?}");
+}
+
+/// What a texel is, lies in its neighbours too: where these were not chosen for it, its light would come as rare sparks.
+#[test]
+fn a_small_sun_is_no_noise() {
+    let mut scene = facing(DVec3::new(0.6, 0.3, -0.7).normalize());
+    let sun = |i: usize| if i == 3 * WIDTH + 9 { 1e5 } else { 0.1 };
+    scene.environment = Some(pictured(|i| DVec3::splat(sun(i))));
+    let found = mean(&Shot::of(&scene).set("max_scatterings", 1).take(), "color");
+    println!("{found:?}");
+    assert!(found.error.x < 1.5e-3 * found.value.x, "{found:?}");
+    assert!(found.value.x > 100.0, "the sun is seen: {found:?}");
 }
 
 /// A scene without a triangle.
