@@ -29,10 +29,10 @@ struct Met {
 
 fn met(hit: Hit, direction: vec3f) -> Met {
     let words = array<vec4u, 4>(
-        bvh[2u * hit.record],
-        bvh[2u * hit.record + 1u],
-        bvh[2u * hit.record + 2u],
-        bvh[2u * hit.record + 3u],
+        bvh[hit.record],
+        bvh[hit.record + 1u],
+        bvh[hit.record + 2u],
+        bvh[hit.record + 3u],
     );
     let a = bitcast<vec3f>(words[0].xyz);
     let b = bitcast<vec3f>(words[1].xyz);

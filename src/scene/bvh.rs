@@ -1,29 +1,35 @@
 //! A bounding volume hierarchy over the scene's triangles, for kernels that trace rays; built by obvhs.
 //!
-//! It is one list of records of [`RECORD`] words (32 B): a grid, the root, the other inner nodes, and then triangles, which
-//! take two records each. Positions are metres from the centre of [`Scene::bounds`], so that a scene far from the origin
-//! loses no more precision than its own transforms have. Boxes are whole numbers of 16 bits on the grid, rounded
-//! outwards and one more: half the memory of floats, and no ray is lost by rounding.
+//! It is a list of records of [`RECORD`] words (16 B): the grid, the root, the other inner nodes, and then the triangles.
+//! Nodes have up to eight children (Ylitie, Karras and Laine 2017): fewer steps for a ray, more alike from ray to ray.
+//! Positions are metres from the centre of [`Scene::bounds`], so that a scene far from the origin loses no more precision
+//! than its own transforms have. Boxes are whole numbers of 16 bits on the grid, rounded outwards and one more, so that no
+//! ray is lost by rounding; and then of 8 bits from the corner of their node, rounded outwards again.
 //!
-//! | words | of the grid |
+//! | words | of the grid, 2 records |
 //! |---|---|
 //! | 0–2, 4–6 | f32: where it begins, and its step, along x, y, z |
 //!
-//! | words | of a node: boxes of its two children, and where these are |
+//! | words | of a node, 5 records |
 //! |---|---|
-//! | 0, 2, 4 | along x, y, z: least (bits 0–15) and greatest (16–31) of the first child |
-//! | 1, 3, 5 | the same of the second |
-//! | 6, 7 | the first child, the second: bit 31 set for a leaf, bits 27–30 its number of triangles, bits 0–26 the record of a node or of a leaf's first triangle |
+//! | 0 | its corner along x (bits 0–15) and y (16–31), on the grid |
+//! | 1 | its corner along z (0–15); binary logarithms of its children's unit along x (16–19), y (20–23), z (24–27), in steps of the grid |
+//! | 2, 3 | the record of its first child that is a node, and of the first triangle in its leaves |
+//! | 4, 5 | a byte for each child: 0 for none, 128 for a node, else a leaf: its first triangle among the node's (bits 0–4), and how many (5–6) |
+//! | 6, 7 and 8, 9 | a byte for each child: least and greatest along x, in its unit from its corner |
+//! | 10–13, 14–17 | the same along y, z |
+//! | 18 | bit i: child i is a node; these follow each other in this order |
 //!
-//! | words | of a triangle |
+//! A child's number tells on which side of its node's middle it lies, as far as that is free to choose: bits 2, 1, 0 are
+//! set for the far side along x, y, z. So a ray visits near children first by going through numbers in an order of its own.
+//!
+//! | words | of a triangle, 4 records |
 //! |---|---|
 //! | 0–2, 4–6, 8–10 | its corners |
 //! | 3, 7, 11 | the corners' vertices |
 //! | 12, 13 | its instance, its index |
 //! | 14 | f32: how likely a ray to an emitter chosen by [`super::emitters`] ends in a unit of its area, 1/m² |
 //! | 15 | bit 0: its material has holes |
-//!
-//! A leaf without triangles stands for a child that is not there.
 
 use super::Scene;
 use super::emitters::emitting;
@@ -33,17 +39,18 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 
-pub const RECORD: usize = 8;
-/// Records of a triangle.
-const OF_TRIANGLE: usize = 2;
+pub const RECORD: usize = 4;
+/// Records of a triangle, and of a node.
+const OF_TRIANGLE: usize = 4;
+const OF_NODE: usize = 5;
 /// Where the root is: after the grid.
-const ROOT: usize = 1;
+const ROOT: usize = 2;
+const CHILDREN: usize = 8;
 /// Inner nodes above any triangle, root included. A kernel's stack holds that many.
-pub const MOST_DEPTH: usize = 48;
-/// Triangles of a leaf. Measured with the Cornell box: 1, 2, 4, 8 took 245, 210, 218, 249 ms.
-const MOST_IN_LEAF: u32 = 8;
-const LEAF: u32 = 1 << 31;
-const COUNT_SHIFT: u32 = 27;
+pub const MOST_DEPTH: usize = 32;
+const MOST_IN_LEAF: u32 = 3;
+const NODE: u8 = 128;
+const COUNT_SHIFT: u32 = 5;
 
 const MASKED: u32 = 1;
 
@@ -59,32 +66,23 @@ pub fn words(scene: &Scene) -> Vec<u32> {
     let boxes: Vec<Aabb> = corners.iter().map(|c| Aabb::from_points(&c.map(Into::into))).collect();
     let params = BvhBuildParams { max_prims_per_leaf: MOST_IN_LEAF, ..BvhBuildParams::medium_build() };
     let tree = build_bvh2(&boxes, params, &mut std::time::Duration::default());
-    let grid = Grid::around(&boxes);
-    let mut writer = Writer { words: grid.words().to_vec(), grid, boxes: &boxes, leaves: Vec::new() };
-    let root = match deepest(&tree) {
-        0 => Part::Run(&[]),
-        1..=MOST_DEPTH => Part::Node(&tree, 0),
+    let root = if tree.nodes.is_empty() { Part::Run(&[]) } else { Part::Node(&tree, 0) };
+    let mut layout = Layout::of(&root, &boxes);
+    if layout.depth > MOST_DEPTH {
         // Halves of the list, which is in the builder's order, are far from the best tree but never deep.
-        _ => Part::Run(&tree.primitive_indices),
-    };
-    writer.root(&root);
-    let Writer { mut words, leaves, .. } = writer;
-    let first_triangle = words.len() / RECORD;
-    // Triangles come after all nodes, leaf by leaf.
-    let mut next = first_triangle;
-    let mut order = Vec::with_capacity(corners.len());
-    for Leaf { at, triangles } in leaves {
-        words[at] = leaf(next, triangles.len());
-        next += OF_TRIANGLE * triangles.len();
-        order.extend(triangles);
+        layout = Layout::of(&Part::Run(&tree.primitive_indices), &boxes);
     }
     let densities = densities(scene, &corners);
-    words.reserve(order.len() * OF_TRIANGLE * RECORD);
-    for triangle in order {
+    let Layout { mut words, triangles, .. } = layout;
+    words.reserve(triangles.len() * OF_TRIANGLE * RECORD);
+    for triangle in triangles {
         words.extend(record(scene, triangle, &corners[triangle as usize], densities[triangle as usize]));
     }
     if scene.still_triangles < scene.triangles.len() {
-        words.resize((ROOT + 1 + (1 + OF_TRIANGLE) * scene.triangles.len()) * RECORD, 0);
+        // Of nodes with fewer than eight children, which then are leaves all, there are at least two triangles in each:
+        // so there are at most four nodes to seven triangles, and the root.
+        let count = scene.triangles.len();
+        words.resize((ROOT + OF_NODE * (count * 4 / 7 + 2) + OF_TRIANGLE * count) * RECORD, 0);
     }
     words
 }
@@ -144,27 +142,6 @@ fn record(scene: &Scene, triangle: u32, corners: &[Vec3; 3], density: f32) -> [u
     ]
 }
 
-/// Inner nodes on the longest way down; 1 for a single leaf, 0 without triangles.
-fn deepest(tree: &Bvh2) -> usize {
-    let mut deepest = 0;
-    let mut open: Vec<(usize, usize)> = tree.nodes.first().map(|_| (0, 1)).into_iter().collect();
-    while let Some((node, depth)) = open.pop() {
-        deepest = deepest.max(depth);
-        let node = &tree.nodes[node];
-        if !node.is_leaf() {
-            let first = node.first_index as usize;
-            open.extend([(first, depth + 1), (first + 1, depth + 1)]);
-        }
-    }
-    deepest
-}
-
-/// Triangles of a leaf, and the word that is to say where they are.
-struct Leaf {
-    at: usize,
-    triangles: Vec<u32>,
-}
-
 /// What boxes are rounded to.
 struct Grid {
     begin: Vec3,
@@ -182,58 +159,124 @@ impl Grid {
         Self { begin: Vec3::from(all.min) - step, step }
     }
 
-    fn words(&self) -> [u32; RECORD] {
+    fn words(&self) -> [u32; ROOT * RECORD] {
         let [begin, step] = [self.begin, self.step].map(|v| v.to_array().map(f32::to_bits));
         [begin[0], begin[1], begin[2], 0, step[0], step[1], step[2], 0]
     }
 
     /// Least and greatest along each axis, one step beyond what holds the box.
-    fn words_of(&self, around: &Aabb) -> [u32; 3] {
+    fn cells(&self, around: &Aabb) -> [[u16; 2]; 3] {
         let low = (Vec3::from(around.min) - self.begin) / self.step;
         let high = (Vec3::from(around.max) - self.begin) / self.step;
         // Casts cut off below 0 and above 65535.
-        std::array::from_fn(|axis| {
-            let least = (low[axis].floor() - 1.0) as u16;
-            let greatest = (high[axis].ceil() + 1.0) as u16;
-            u32::from(least) | u32::from(greatest) << 16
-        })
+        std::array::from_fn(|axis| [(low[axis].floor() - 1.0) as u16, (high[axis].ceil() + 1.0) as u16])
     }
 }
 
-struct Writer<'a> {
+/// All nodes, laid out.
+struct Layout {
+    /// Of the grid and the nodes.
     words: Vec<u32>,
-    grid: Grid,
-    boxes: &'a [Aabb],
-    leaves: Vec<Leaf>,
+    /// In the order of the records to come.
+    triangles: Vec<u32>,
+    /// Inner nodes on the longest way down.
+    depth: usize,
 }
 
-impl<'a> Writer<'a> {
-    /// Depth first, so that a child often lies beside its parent. A root that is a leaf gets a node above it.
-    fn root(&mut self, root: &Part<'a>) {
-        let children = root.children().unwrap_or_else(|| [root.alike(), Part::Run(&[])]);
-        let mut open = vec![(None, children)];
-        while let Some((at, children)) = open.pop() {
-            let record = self.words.len();
-            if let Some(at) = at {
-                self.words[at] = (record / RECORD) as u32;
+impl Layout {
+    /// Breadth first, so that the nodes among the children of one follow each other.
+    fn of<'a>(root: &Part<'a>, boxes: &[Aabb]) -> Self {
+        let grid = Grid::around(boxes);
+        let mut layout = Self { words: grid.words().to_vec(), triangles: Vec::new(), depth: 0 };
+        let mut level: Vec<Part<'a>> = vec![root.alike()];
+        while !level.is_empty() {
+            layout.depth += 1;
+            let mut next = layout.words.len() / RECORD + OF_NODE * level.len();
+            let mut below = Vec::new();
+            for part in level {
+                let before = below.len();
+                layout.node(&part, boxes, &grid, next, &mut below);
+                next += OF_NODE * (below.len() - before);
             }
-            self.words.resize(record + RECORD, 0);
-            for (which, child) in children.into_iter().enumerate().rev() {
-                for (axis, word) in self.grid.words_of(&child.bounds(self.boxes)).into_iter().enumerate() {
-                    self.words[record + 2 * axis + which] = word;
-                }
-                let at = record + 6 + which;
-                match child.children() {
-                    Some(children) => open.push((Some(at), children)),
-                    None => self.leaves.push(Leaf { at, triangles: child.triangles() }),
-                }
+            level = below;
+        }
+        let first = (layout.words.len() / RECORD) as u32;
+        for node in layout.words[ROOT * RECORD..].chunks_exact_mut(OF_NODE * RECORD) {
+            node[3] = first + node[3] * OF_TRIANGLE as u32;
+        }
+        layout
+    }
+
+    /// Adds a node; `first`: the record of the first of its children that are nodes, which go to `below`.
+    fn node<'a>(
+        &mut self,
+        part: &Part<'a>,
+        boxes: &[Aabb],
+        grid: &Grid,
+        first: usize,
+        below: &mut Vec<Part<'a>>,
+    ) {
+        let children = part.wide(boxes);
+        let cells: Vec<[[u16; 2]; 3]> =
+            children.iter().map(|child| grid.cells(&child.bounds(boxes))).collect();
+        let corner: [u16; 3] =
+            std::array::from_fn(|axis| cells.iter().map(|c| c[axis][0]).min().unwrap_or(0));
+        let end: [u16; 3] = std::array::from_fn(|axis| cells.iter().map(|c| c[axis][1]).max().unwrap_or(0));
+        let units: [u32; 3] = std::array::from_fn(|axis| {
+            let extent = u32::from(end[axis] - corner[axis]);
+            (0..16).find(|unit| extent.div_ceil(1 << unit) <= 255).unwrap_or(15)
+        });
+        let mut node = [0; OF_NODE * RECORD];
+        node[0] = u32::from(corner[0]) | u32::from(corner[1]) << 16;
+        node[1] = u32::from(corner[2]) | units[0] << 16 | units[1] << 20 | units[2] << 24;
+        // Of triangles not the record yet, but the number.
+        (node[2], node[3]) = (first as u32, self.triangles.len() as u32);
+        let begin = self.triangles.len();
+        for (slot, child) in slots(&cells).into_iter().enumerate() {
+            let Some(child) = child else { continue };
+            let byte = |node: &mut [u32], word: usize, value: u8| {
+                node[word + slot / 4] |= u32::from(value) << (8 * (slot % 4));
+            };
+            for axis in 0..3 {
+                let [low, high] = cells[child][axis].map(|cell| u32::from(cell - corner[axis]));
+                byte(&mut node, 6 + 4 * axis, (low >> units[axis]) as u8);
+                byte(&mut node, 8 + 4 * axis, high.div_ceil(1 << units[axis]) as u8);
+            }
+            if children[child].children().is_some() {
+                node[18] |= 1 << slot;
+                byte(&mut node, 4, NODE);
+                below.push(children[child].alike());
+            } else {
+                let leaf = children[child].triangles();
+                byte(&mut node, 4, ((leaf.len() << COUNT_SHIFT) | (self.triangles.len() - begin)) as u8);
+                self.triangles.extend(leaf);
             }
         }
+        self.words.extend(node);
     }
 }
 
-fn leaf(first: usize, count: usize) -> u32 {
-    LEAF | (count as u32) << COUNT_SHIFT | first as u32
+/// Which child gets which number: best pairs first, by how far it lies on that side.
+fn slots(cells: &[[[u16; 2]; 3]]) -> [Option<usize>; CHILDREN] {
+    let middle = |c: &[[u16; 2]; 3]| c.map(|[low, high]| i64::from(low) + i64::from(high));
+    let middles: Vec<[i64; 3]> = cells.iter().map(middle).collect();
+    let sum: [i64; 3] = std::array::from_fn(|axis| middles.iter().map(|m| m[axis]).sum());
+    let score = |child: usize, slot: usize| -> i64 {
+        let off = |axis: usize| middles[child][axis] * middles.len() as i64 - sum[axis];
+        (0..3).map(|axis| if slot & (4 >> axis) == 0 { -off(axis) } else { off(axis) }).sum()
+    };
+    let mut pairs: Vec<(i64, usize, usize)> = (0..cells.len())
+        .flat_map(|child| (0..CHILDREN).map(move |slot| (child, slot)))
+        .map(|(child, slot)| (-score(child, slot), child, slot))
+        .collect();
+    pairs.sort_unstable();
+    let (mut slots, mut placed) = ([None; CHILDREN], [false; CHILDREN]);
+    for (_, child, slot) in pairs {
+        if !placed[child] && slots[slot].is_none() {
+            (placed[child], slots[slot]) = (true, Some(child));
+        }
+    }
+    slots
 }
 
 impl<'a> Part<'a> {
@@ -257,6 +300,25 @@ impl<'a> Part<'a> {
                 [Part::Run(left), Part::Run(right)]
             }),
         }
+    }
+
+    /// Up to eight children, the largest taken apart first; itself if it is a leaf.
+    fn wide(&self, boxes: &[Aabb]) -> Vec<Self> {
+        let mut children = vec![self.alike()];
+        while children.len() < CHILDREN {
+            let area = |at: &usize| children[*at].bounds(boxes).half_area();
+            let inner = (0..children.len()).filter(|at| children[*at].children().is_some());
+            let Some(largest) = inner.max_by(|a, b| area(a).total_cmp(&area(b))) else { break };
+            if let Some(two) = children[largest].children() {
+                children.splice(largest..=largest, two);
+            }
+        }
+        children.retain(|child| !child.is_empty());
+        children
+    }
+
+    fn is_empty(&self) -> bool {
+        matches!(self, Part::Run([]))
     }
 
     fn triangles(&self) -> Vec<u32> {

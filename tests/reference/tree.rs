@@ -11,8 +11,8 @@ use voxgi::scene::bvh::{MOST_DEPTH, RECORD, words};
 type Corners = [Vec3; 3];
 
 /// Records of a triangle; the root comes after the grid.
-const OF_TRIANGLE: usize = 2;
-const ROOT: usize = 1;
+const OF_TRIANGLE: usize = 4;
+const ROOT: usize = 2;
 
 fn scene(triangles: &[Corners]) -> Scene {
     Stage::new().surface(triangles, matt(Vec3::ONE)).seen_from(DVec3::Z, -DVec3::Z)
@@ -32,22 +32,44 @@ impl Tree<'_> {
         f32::from_bits(self.0[word])
     }
 
-    /// Both children of a node, each with the least and the greatest corner of its box.
-    fn children(&self, node: usize) -> [(Child, [DVec3; 2]); 2] {
+    fn byte(&self, node: usize, word: usize, slot: usize) -> u32 {
+        self.0[node * RECORD + word + slot / 4] >> (8 * (slot % 4)) & 255
+    }
+
+    /// Children of a node, each with the least and the greatest corner of its box.
+    fn children(&self, node: usize) -> Vec<(Child, [DVec3; 2])> {
         let [begin, step] =
             [0, 4].map(|word| DVec3::from_array([0, 1, 2].map(|axis| self.float(word + axis).into())));
-        [0, 1].map(|which| {
-            let words = [0, 1, 2].map(|axis| self.0[node * RECORD + 2 * axis + which]);
-            let low = DVec3::from_array(words.map(|word| f64::from(word & 0xffff)));
-            let high = DVec3::from_array(words.map(|word| f64::from(word >> 16)));
-            let word = self.0[node * RECORD + 6 + which];
-            let (at, count) = ((word & 0x07ff_ffff) as usize, (word >> 27 & 15) as usize);
-            let child = match word >> 31 {
-                1 => Child::Leaf((0..count).map(|i| at + OF_TRIANGLE * i).collect()),
-                _ => Child::Node(at),
+        let words = &self.0[node * RECORD..];
+        let corner = [words[0] & 0xffff, words[0] >> 16, words[1] & 0xffff];
+        let mut children = Vec::new();
+        let (mut next, mut offset) = (words[2] as usize, 0);
+        for slot in 0..8 {
+            let side = |word: usize| {
+                let cell = |axis: usize| {
+                    let unit = 1 << (words[1] >> (16 + 4 * axis) & 15);
+                    f64::from(corner[axis] + self.byte(node, word + 4 * axis, slot) * unit)
+                };
+                begin + step * DVec3::from_array([0, 1, 2].map(cell))
             };
-            (child, [low, high].map(|corner| begin + step * corner))
-        })
+            let kind = self.byte(node, 4, slot);
+            assert_eq!(kind == 128, words[18] >> slot & 1 == 1, "nodes are told twice");
+            let child = match kind {
+                0 => continue,
+                128 => {
+                    next += 5;
+                    Child::Node(next - 5)
+                }
+                leaf => {
+                    assert_eq!(leaf & 31, offset, "leaves follow each other");
+                    let first = words[3] as usize + OF_TRIANGLE * offset as usize;
+                    offset += leaf >> 5;
+                    Child::Leaf((0..leaf >> 5).map(|i| first + OF_TRIANGLE * i as usize).collect())
+                }
+            };
+            children.push((child, [side(6), side(8)]));
+        }
+        children
     }
 
     fn corners(&self, record: usize) -> Corners {
@@ -124,6 +146,9 @@ fn check(triangles: &[Corners]) {
     assert!(words.len() >= RECORD && words.len().is_multiple_of(RECORD));
     let mut found = Vec::new();
     Tree(&words).check(ROOT, &mut Vec::new(), &mut found);
+    // What scenes that move leave room for.
+    let nodes = (words.len() / RECORD - ROOT - OF_TRIANGLE * triangles.len()) / 5;
+    assert!(nodes <= triangles.len() * 4 / 7 + 2, "{nodes} nodes");
     found.sort_by_key(|(index, _)| *index);
     assert!(found.iter().map(|(index, _)| *index).eq(0..triangles.len() as u32), "each triangle once");
     let center = scene.bounds.center();
@@ -200,7 +225,7 @@ fn extremes_are_held() {
 #[test]
 fn few_triangles_and_many_alike() {
     let triangle = [Vec3::ZERO, Vec3::X, Vec3::Y];
-    for count in [0, 1, 2, 8, 9, 15, 16, 17, 1000] {
+    for count in [0, 1, 2, 3, 4, 8, 9, 16, 24, 25, 1000] {
         check(&vec![triangle; count]);
     }
 }
@@ -220,7 +245,12 @@ fn a_walk_leaves_out_most() {
     };
     assert!(through(&words, &mut looked).is_some_and(|t| (t - 5.0).abs() < 1e-6));
     assert!(looked <= 32, "{looked} looked at");
-    // Boxes of one point.
-    words[ROOT * RECORD..ROOT * RECORD + 6].fill(0);
+    // Boxes that end where they begin.
+    for axis in 0..3 {
+        for half in 0..2 {
+            let word = ROOT * RECORD + 6 + 4 * axis + half;
+            words[word + 2] = words[word];
+        }
+    }
     assert!(std::panic::catch_unwind(|| Tree(&words).check(ROOT, &mut Vec::new(), &mut Vec::new())).is_err());
 }
