@@ -15,6 +15,8 @@ mod lights;
 mod program;
 #[path = "technique/scenes.rs"]
 mod scenes;
+#[path = "support/scenes.rs"]
+mod support;
 #[path = "technique/voxels.rs"]
 mod voxels;
 #[path = "technique/world.rs"]

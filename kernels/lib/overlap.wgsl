@@ -1,57 +1,90 @@
-// Which voxels a triangle touches: exact tests, 26-separating (the triangle meets the closed cube) and 6-separating
-// (it meets the voxel's three axes in projection: thin, and still without holes that a path over faces could take).
+// Which voxels a triangle fills: 26-separating (it meets the closed cube), 6-separating (thin: the plane passes the
+// column's middle line in the voxel, and in each projection every edge has an end of the voxel's two axes on its inner
+// side; no path over faces leads through, with fewer voxels).
 //
 // Source: R 4.1, figures 4.4 and 4.5, with these corrections (R = Rauwendaal 2013): the tests of the planes yz and zx
 // use p_yz and p_zx; bounds are floors, loops inclusive; 6-separating takes one voxel for each column, the one that
-// holds the plane at the column's centre. Everything is in units of voxels, in a space turned so that the largest
-// component of the normal is z, and relative to the first voxel of the triangle's bounds: the products then are as
-// small as the triangle is, and f32 is exact enough for small triangles.
+// holds the plane at the column's middle, its upper face not included. A triangle without area fills what it meets as
+// a segment or point, whatever the separability.
+// Exact: corners are whole numbers of units, odd ones, so that none lies on a face of a voxel or in its middle. Single
+// floats decide where they can be sure; where not, integers do (lib/wide). Everything is in a space turned so that the
+// largest component of the normal is z, and relative to a voxel.
 
-/// The half-planes `a·p.x + b·p.y + c ≥ 0` of three edges; a component for each edge.
+import lib/wide;
+
+/// Units of a voxel's side.
+const UNITS: i32 = 4096;
+/// Bounds what single floats lose in the tests here, in parts of the sizes of the terms: 8 roundings.
+const DOUBT: f32 = 9.5367432e-7;
+/// Corners farther out than this are moved there, in voxels: products must fit.
+const OUTMOST: f32 = 131072.0;
+
+/// The unit that a place along an axis of the grid, in voxels, is snapped to.
+fn snapped(p: vec3f) -> vec3i {
+    return 2 * vec3i(floor(clamp(p, vec3f(-OUTMOST), vec3f(OUTMOST)) * f32(UNITS / 2))) + 1;
+}
+
+/// The voxel along each axis that holds a unit.
+fn voxel_of(p: vec3i) -> vec3i {
+    // Rounds down; the shift of negative numbers does.
+    return p >> vec3u(12u);
+}
+
+/// Half-planes `a·p.x + b·p.y + c ≥ 0` of three edges over voxels p; a component for each edge. Within `doubt` of 0 they
+/// are not sure.
 struct HalfPlanes {
     a: vec3f,
     b: vec3f,
     c: vec3f,
+    doubt: vec3f,
 }
 
 struct Overlap {
+    corners: array<vec3i, 3>,
+    normal: array<vec2u, 3>,
+    thin: bool,
     xy: HalfPlanes,
     yz: HalfPlanes,
     zx: HalfPlanes,
-    /// z where the plane meets the column of voxel (0, 0): first and last, and their slopes over x and y.
+    /// z, in voxels, where the plane meets the column of voxel (0, 0): first and last, their slopes, and the doubt.
     z_first: f32,
     z_last: f32,
     slope: vec2f,
-    /// Zero-area triangles touch nothing.
-    valid: bool,
+    z_doubt: f32,
 }
 
-/// Half-planes of one projection. `u`, `v`: the corners' coordinates; `facing`: the sign that makes the edges' normals
-/// point inwards, 0 where the projection is a line (all tests then pass, and the other projections decide).
-fn half_planes(u: vec3f, v: vec3f, facing: f32, thin: bool) -> HalfPlanes {
-    let a = -facing * (v.yzx - v);
-    let b = facing * (u.yzx - u);
-    // Conservative: the corner of the voxel that lies furthest inside. Thin: the end of its axes that does.
-    let conservative = max(a, vec3f(0.0)) + max(b, vec3f(0.0)) - a * u - b * v;
-    let axes = 0.5 * max(abs(a), abs(b)) + a * (0.5 - u) + b * (0.5 - v);
-    return HalfPlanes(a, b, select(conservative, axes, thin));
+fn difference_of_products(a: i32, b: i32, c: i32, d: i32) -> vec2u {
+    return sum_64(product_64(a, b), negative_64(product_64(c, d)));
 }
 
-fn inside(planes: HalfPlanes, p: vec2f) -> bool {
-    return all(planes.a * p.x + planes.b * p.y + planes.c >= vec3f(0.0));
+/// Of the triangle's plane: the product of two edges, in units².
+fn normal_of(p: array<vec3i, 3>) -> array<vec2u, 3> {
+    let u = p[1] - p[0];
+    let v = p[2] - p[1];
+    return array(
+        difference_of_products(u.y, v.z, u.z, v.y),
+        difference_of_products(u.z, v.x, u.x, v.z),
+        difference_of_products(u.x, v.y, u.y, v.x),
+    );
 }
 
-/// 0, 1, 2: which axis becomes z, that is the dominant one of the normal.
-fn dominant_axis(n: vec3f) -> u32 {
-    let size = abs(n);
-    if size.z >= size.x && size.z >= size.y {
+fn less_64(a: vec2u, b: vec2u) -> bool {
+    return a.y < b.y || (a.y == b.y && a.x < b.x);
+}
+
+/// 0, 1, 2: which axis becomes z, that is the dominant one of the normal; of equal ones z, then x.
+fn dominant_axis(n: array<vec2u, 3>) -> u32 {
+    let x = absolute_64(n[0]);
+    let y = absolute_64(n[1]);
+    let z = absolute_64(n[2]);
+    if !less_64(z, x) && !less_64(z, y) {
         return 2u;
     }
-    return select(1u, 0u, size.x >= size.y);
+    return select(1u, 0u, !less_64(x, y));
 }
 
 /// R eq. 4.1: x dominant yzx, y dominant zxy.
-fn turn(p: vec3f, axis: u32) -> vec3f {
+fn turn(p: vec3i, axis: u32) -> vec3i {
     return select(select(p, p.zxy, axis == 1u), p.yzx, axis == 0u);
 }
 
@@ -60,33 +93,171 @@ fn turn_back(p: vec3i, axis: u32) -> vec3i {
     return select(select(p, p.yzx, axis == 1u), p.zxy, axis == 0u);
 }
 
-/// Prepares a triangle whose corners are turned and relative.
-fn overlap_of(p: array<vec3f, 3>, thin: bool) -> Overlap {
-    let x = vec3f(p[0].x, p[1].x, p[2].x);
-    let y = vec3f(p[0].y, p[1].y, p[2].y);
-    let z = vec3f(p[0].z, p[1].z, p[2].z);
-    let n = cross(p[1] - p[0], p[2] - p[1]);
-    let up = n * sign(n.z);
-    let valid = up.z > 0.0;
-    let scale = 1.0 / select(1.0, up.z, valid);
-    let d = dot(up, p[0]);
+/// Half-planes of one projection. `u`, `v`: the corners' coordinates; `facing`: the sign that makes the edges' normals
+/// point inwards, 0 where the projection is a line (all tests then pass, and the others decide); `extent`: the greatest
+/// voxel that is asked for.
+fn half_planes(u: vec3i, v: vec3i, facing: i32, thin: bool, extent: vec2i) -> HalfPlanes {
+    let side = f32(UNITS);
+    let at_u = vec3f(u);
+    let at_v = vec3f(v);
+    let a = vec3f(-facing * (v.yzx - v));
+    let b = vec3f(facing * (u.yzx - u));
+    // Conservative: the corner of the voxel that lies furthest inside. Thin: the end of its axes that does.
+    let conservative = side * (max(a, vec3f(0.0)) + max(b, vec3f(0.0))) - a * at_u - b * at_v;
+    let axes = 0.5 * side * (max(abs(a), abs(b)) + a + b) - a * at_u - b * at_v;
+    let reach = vec2f(extent + 2) * side;
+    let doubt = DOUBT * (abs(a) * (reach.x + abs(at_u)) + abs(b) * (reach.y + abs(at_v)));
+    let c = select(conservative, axes, thin);
+    return HalfPlanes(a * side, b * side, select(c, vec3f(1.0), facing == 0), doubt);
+}
+
+/// One edge's test for a voxel of a projection, in integers.
+fn exactly_inside(begin: vec2i, end: vec2i, facing: i32, thin: bool, voxel: vec2i) -> bool {
+    let a = -facing * (end.y - begin.y);
+    let b = facing * (end.x - begin.x);
+    let reach = select(0, UNITS / 2, thin);
+    let base = voxel * UNITS + reach - begin;
+    var value = sum_64(product_64(a, base.x), product_64(b, base.y));
+    if thin {
+        value = sum_64(value, product_64(UNITS / 2, max(abs(a), abs(b))));
+    } else {
+        value = sum_64(value, sum_64(product_64(UNITS, max(a, 0)), product_64(UNITS, max(b, 0))));
+    }
+    return !is_negative_64(value);
+}
+
+/// The tests of one projection for voxel `p`; `u`, `v`: its coordinates, `facing`: the component of the normal across.
+fn inside(o: Overlap, planes: HalfPlanes, u: u32, v: u32, facing: u32, p: vec2i) -> bool {
+    let value = planes.a * f32(p.x) + planes.b * f32(p.y) + planes.c;
+    if any(value < -planes.doubt) {
+        return false;
+    }
+    if all(value > planes.doubt) {
+        return true;
+    }
+    let side = sign_64(o.normal[facing]);
+    for (var i = 0u; i < 3u; i++) {
+        let begin = o.corners[i];
+        let end = o.corners[(i + 1u) % 3u];
+        if !exactly_inside(vec2i(begin[u], begin[v]), vec2i(end[u], end[v]), side, o.thin, p) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/// Prepares a triangle with an area, whose corners are turned and relative; voxels from 0 to `size` will be asked for.
+fn overlap_of(p: array<vec3i, 3>, thin: bool, size: vec3i) -> Overlap {
+    let n = normal_of(p);
+    var out: Overlap;
+    out.corners = p;
+    out.normal = n;
+    out.thin = thin;
+    let x = vec3i(p[0].x, p[1].x, p[2].x);
+    let y = vec3i(p[0].y, p[1].y, p[2].y);
+    let z = vec3i(p[0].z, p[1].z, p[2].z);
+    out.xy = half_planes(x, y, sign_64(n[2]), thin, size.xy);
+    out.yz = half_planes(y, z, sign_64(n[0]), thin, size.yz);
+    out.zx = half_planes(z, x, sign_64(n[1]), thin, size.zx);
+    let up = vec3f(float_64(n[0]), float_64(n[1]), float_64(n[2])) / float_64(n[2]);
+    let corner = vec3f(p[0]) / f32(UNITS);
+    let d = dot(up, corner);
     // Over the column's square the plane reaches from its lowest to its highest corner.
     let low = d - max(up.x, 0.0) - max(up.y, 0.0);
     let high = d - min(up.x, 0.0) - min(up.y, 0.0);
     let middle = d - 0.5 * (up.x + up.y);
-    return Overlap(
-        half_planes(x, y, sign(n.z), thin),
-        half_planes(y, z, sign(n.x), thin),
-        half_planes(z, x, sign(n.y), thin),
-        select(low, middle, thin) * scale,
-        select(high, middle, thin) * scale,
-        -up.xy * scale,
-        valid,
-    );
+    out.z_first = select(low, middle, thin);
+    out.z_last = select(high, middle, thin);
+    out.slope = -up.xy;
+    let far = abs(corner) + vec3f(size) + 2.0;
+    out.z_doubt = DOUBT * (far.x + far.y + far.z);
+    return out;
 }
 
-/// First and last voxel of column (p.x, p.y) whose slab the plane meets.
-fn column_range(o: Overlap, p: vec2f) -> vec2f {
-    let shift = dot(o.slope, p);
-    return floor(vec2f(o.z_first, o.z_last) + shift);
+/// First and last voxel of column p whose slab the plane may meet, and those between which it surely does.
+fn column_range(o: Overlap, p: vec2i) -> vec4i {
+    let shift = dot(o.slope, vec2f(p));
+    let ends = vec2f(o.z_first, o.z_last) + shift;
+    return vec4i(floor(vec4f(ends - vec2f(o.z_doubt, -o.z_doubt), ends + vec2f(o.z_doubt, -o.z_doubt))));
+}
+
+/// On which side of the plane a point of units lies.
+fn side_of(o: Overlap, p: vec3i) -> i32 {
+    let begin = p - o.corners[0];
+    let xy = sum_128(product_128(o.normal[0], begin.x), product_128(o.normal[1], begin.y));
+    return sign_128(sum_128(xy, product_128(o.normal[2], begin.z)));
+}
+
+/// Whether the plane meets the voxel: in its middle line along z, thin; anywhere, conservative.
+fn plane_meets(o: Overlap, voxel: vec3i) -> bool {
+    let low = voxel * UNITS;
+    if o.thin {
+        let up = sign_64(o.normal[2]);
+        let middle = low + vec3i(UNITS / 2, UNITS / 2, 0);
+        return up * side_of(o, middle) <= 0 && up * side_of(o, middle + vec3i(0, 0, UNITS)) > 0;
+    }
+    let signs = vec3i(sign_64(o.normal[0]), sign_64(o.normal[1]), sign_64(o.normal[2]));
+    let behind = low + select(vec3i(0), vec3i(UNITS), signs < vec3i(0));
+    let before = low + select(vec3i(0), vec3i(UNITS), signs > vec3i(0));
+    return side_of(o, behind) <= 0 && side_of(o, before) >= 0;
+}
+
+/// Whether the triangle, which has an area, fills a voxel of its bounds; `range`: of its column.
+fn fills(o: Overlap, range: vec4i, voxel: vec3i) -> bool {
+    return inside(o, o.yz, 1u, 2u, 0u, voxel.yz)
+        && inside(o, o.zx, 2u, 0u, 1u, voxel.zx)
+        && ((voxel.z >= range.z && voxel.z <= range.w) || plane_meets(o, voxel));
+}
+
+/// Ends of what has no area: the corners that are farthest apart.
+struct Line {
+    begin: vec3i,
+    end: vec3i,
+}
+
+fn line_of(p: array<vec3i, 3>) -> Line {
+    var out = Line(p[0], p[1]);
+    for (var i = 1u; i < 3u; i++) {
+        let other = p[(i + 1u) % 3u];
+        if norm_max_of(other - p[i]) > norm_max_of(out.end - out.begin) {
+            out = Line(p[i], other);
+        }
+    }
+    return out;
+}
+
+fn norm_max_of(v: vec3i) -> i32 {
+    return max(abs(v.x), max(abs(v.y), abs(v.z)));
+}
+
+/// The axis along which a segment is longest.
+fn longest_axis(line: Line) -> u32 {
+    let size = abs(line.end - line.begin);
+    if size.z >= size.x && size.z >= size.y {
+        return 2u;
+    }
+    return select(1u, 0u, size.x >= size.y);
+}
+
+fn projection_meets(begin: vec2i, end: vec2i, voxel: vec2i) -> bool {
+    return exactly_inside(begin, end, 1, false, voxel) && exactly_inside(begin, end, -1, false, voxel);
+}
+
+/// Whether a segment meets a voxel of its bounds.
+fn line_meets(line: Line, voxel: vec3i) -> bool {
+    return projection_meets(line.begin.xy, line.end.xy, voxel.xy)
+        && projection_meets(line.begin.yz, line.end.yz, voxel.yz)
+        && projection_meets(line.begin.zx, line.end.zx, voxel.zx);
+}
+
+/// Least and greatest voxel along x and y that a segment, longest along z, may meet in a layer of voxels.
+fn line_range(line: Line, layer: i32) -> vec4i {
+    let begin = vec3f(line.begin) / f32(UNITS);
+    let along = vec3f(line.end - line.begin) / f32(UNITS);
+    let slope = along.xy / select(along.z, 1.0, along.z == 0.0);
+    let ends = vec2f(f32(layer), f32(layer + 1)) - begin.z;
+    let a = begin.xy + slope * ends.x;
+    let b = begin.xy + slope * ends.y;
+    let doubt = DOUBT * (abs(begin.x) + abs(begin.y) + abs(begin.z) + abs(ends.y) + 2.0);
+    return vec4i(vec2i(floor(min(a, b) - doubt)), vec2i(floor(max(a, b) + doubt)));
 }

@@ -6,6 +6,8 @@
 // batches are independent.
 // Cost of a pair: some 80 integer operations.
 
+import lib/wide;
+
 /// A permutation of 32-bit words: one step of PCG with its output function (Jarzynski and Olano 2020).
 fn hash(x: u32) -> u32 {
     let state = x * 747796405u + 2891336453u;
@@ -22,12 +24,8 @@ const BELOW_ONE: f32 = 0.99999994;
 /// x · count, as multiples of 2^32 and the rest: one of `count` by a random word, and a random word again. The rest comes
 /// in steps of `count`; it is the middle of its step.
 fn scaled(x: u32, count: u32) -> vec2u {
-    let a = vec2u(x & 0xffffu, x >> 16u);
-    let b = vec2u(count & 0xffffu, count >> 16u);
-    let one = a.y * b.x + ((a.x * b.x) >> 16u);
-    let other = a.x * b.y + (one & 0xffffu);
-    let rest = x * count;
-    return vec2u(a.y * b.y + (one >> 16u) + (other >> 16u), rest + min(count / 2u, ~rest));
+    let words = product(x, count);
+    return vec2u(words.y, words.x + min(count / 2u, ~words.x));
 }
 
 /// [0, 1).

@@ -2,8 +2,7 @@
 // imports this says in `first_touch` what is to be done with a voxel that had none before.
 //
 // Source: R 4.1.1 (triangle-parallel), tests in lib/overlap. A fragment's attributes are those of the triangle's point
-// nearest to the voxel's centre, images filtered to the width of a voxel. Corners are snapped to 1/4096 voxel: walls
-// along the axes stay planes to the last bit, so that both triangles of a wall fill the same layer.
+// nearest to the voxel's centre, images filtered to the width of a voxel.
 // Normals are those of the corners, not of normal maps: what a map shows is finer than a voxel.
 // Reads per thread: a triangle with 3 corners (ca. 400 B); per fragment 8 texels (×2 where it emits) for textured
 // materials; writes per fragment 10 atomic words (13). One thread walks all columns of its triangle: large triangles
@@ -34,8 +33,6 @@ struct SceneFacts {
 var<uniform> scene: SceneFacts;
 
 var<storage, read_write> sums: array<atomic<u32>>;
-
-const SNAP: f32 = 4096.0;
 
 /// A triangle ready to be put into voxels.
 struct Source {
@@ -104,37 +101,66 @@ fn add_fragment(source: Source, voxel: vec3i) -> bool {
 /// Returns how many fragments it added.
 fn voxelize(triangle: u32) -> u32 {
     let face = face_of(triangle);
-    var corners: array<vec3f, 3>;
+    var corners: array<vec3i, 3>;
     for (var i = 0u; i < 3u; i++) {
-        corners[i] = round(to_grid(face.corners[i].position) * SNAP) / SNAP;
+        corners[i] = snapped(to_grid(face.corners[i].position));
     }
-    let axis = dominant_axis(cross(corners[1] - corners[0], corners[2] - corners[1]));
-    let last = f32(knobs.resolution - 1u);
-    let low = clamp(floor(min(corners[0], min(corners[1], corners[2]))), vec3f(0.0), vec3f(last));
-    let high = clamp(floor(max(corners[0], max(corners[1], corners[2]))), vec3f(0.0), vec3f(last));
-    let first = turn(low, axis);
-    let size = turn(high - low, axis);
-    var turned: array<vec3f, 3>;
-    for (var i = 0u; i < 3u; i++) {
-        turned[i] = turn(corners[i] - low, axis);
-    }
-    let overlap = overlap_of(turned, knobs.separability == 6u);
-    if !overlap.valid {
+    let last = vec3i(i32(knobs.resolution) - 1);
+    let least = voxel_of(min(corners[0], min(corners[1], corners[2])));
+    let greatest = voxel_of(max(corners[0], max(corners[1], corners[2])));
+    if any(least > last) || any(greatest < vec3i(0)) {
         return 0u;
     }
-    let source = Source(corners, face, uv_footprint(face));
+    let low = max(least, vec3i(0));
+    let size = min(greatest, last) - low;
+    let normal = normal_of(corners);
+    let flat = all(normal[0] == vec2u(0u)) && all(normal[1] == vec2u(0u)) && all(normal[2] == vec2u(0u));
+    let axis = select(dominant_axis(normal), longest_axis(line_of(corners)), flat);
+    let first = turn(low, axis);
+    var placed: array<vec3f, 3>;
+    var turned: array<vec3i, 3>;
+    for (var i = 0u; i < 3u; i++) {
+        placed[i] = vec3f(corners[i]) / f32(UNITS);
+        turned[i] = turn(corners[i] - low * UNITS, axis);
+    }
+    let source = Source(placed, face, uv_footprint(face));
+    if flat {
+        return voxelize_line(source, line_of(turned), first, turn(size, axis), axis);
+    }
+    return voxelize_area(source, turned, first, turn(size, axis), axis);
+}
+
+/// `first`: the voxel that `corners` are relative to; `size`: the last voxel from there.
+fn voxelize_area(source: Source, corners: array<vec3i, 3>, first: vec3i, size: vec3i, axis: u32) -> u32 {
+    let overlap = overlap_of(corners, knobs.separability == 6u, size);
     var fragments = 0u;
-    for (var y = 0.0; y <= size.y; y += 1.0) {
-        for (var x = 0.0; x <= size.x; x += 1.0) {
-            let p = vec2f(x, y);
-            if !inside(overlap.xy, p) {
+    for (var y = 0; y <= size.y; y++) {
+        for (var x = 0; x <= size.x; x++) {
+            if !inside(overlap, overlap.xy, 0u, 1u, 2u, vec2i(x, y)) {
                 continue;
             }
-            let range = column_range(overlap, p);
-            for (var z = max(range.x, 0.0); z <= min(range.y, size.z); z += 1.0) {
-                if inside(overlap.yz, vec2f(y, z)) && inside(overlap.zx, vec2f(z, x)) {
-                    let voxel = turn_back(vec3i(first + vec3f(x, y, z)), axis);
-                    fragments += u32(add_fragment(source, voxel));
+            let range = column_range(overlap, vec2i(x, y));
+            for (var z = max(range.x, 0); z <= min(range.y, size.z); z++) {
+                let voxel = vec3i(x, y, z);
+                if fills(overlap, range, voxel) {
+                    fragments += u32(add_fragment(source, turn_back(first + voxel, axis)));
+                }
+            }
+        }
+    }
+    return fragments;
+}
+
+/// The same for what has no area.
+fn voxelize_line(source: Source, line: Line, first: vec3i, size: vec3i, axis: u32) -> u32 {
+    var fragments = 0u;
+    for (var z = 0; z <= size.z; z++) {
+        let range = line_range(line, z);
+        for (var y = max(range.y, 0); y <= min(range.w, size.y); y++) {
+            for (var x = max(range.x, 0); x <= min(range.z, size.x); x++) {
+                let voxel = vec3i(x, y, z);
+                if line_meets(line, voxel) {
+                    fragments += u32(add_fragment(source, turn_back(first + voxel, axis)));
                 }
             }
         }
