@@ -168,8 +168,8 @@ fn a_thousand_frames_take_no_more_memory_than_a_few() {
     println!("1000 frames took {grown} bytes more");
     // A single word leaked per pass would be 1000 × 40 × 8 B = 320 kB; an encoder's memory, far more.
     assert!(grown <= 256 << 10, "{grown} bytes");
-    // The control: a leak of a kilobyte a frame shows in this figure.
-    let leaked: Vec<Vec<u8>> = (0..1000).map(|_| std::hint::black_box(vec![1; 1024])).collect();
-    assert!(resident_bytes().saturating_sub(before) > 512 << 10);
+    // The control: a leak shows in this figure once it is more than the allocator has free, which can be a megabyte.
+    let leaked: Vec<Vec<u8>> = (0..1000).map(|_| std::hint::black_box(vec![1; 16 << 10])).collect();
+    assert!(resident_bytes().saturating_sub(before) > 8 << 20);
     drop(leaked);
 }
