@@ -28,6 +28,15 @@ fn load_cornell() -> Scene {
     cornell()
 }
 
+/// The triangles' hierarchy: of Sponza where `VOXGI_SCENES` has it, else of the Cornell box.
+#[divan::bench(sample_count = 5)]
+fn hierarchy(bencher: Bencher) {
+    let sponza = std::env::var_os("VOXGI_SCENES").map(|folder| Path::new(&folder).join("sponza-crytek.glb"));
+    let scene = sponza.and_then(|file| scene::load(&file).ok()).unwrap_or_else(cornell);
+    println!("{} triangles, {} bytes", scene.triangles.len(), 4 * scene::bvh::words(&scene).len());
+    bencher.bench(|| scene::bvh::words(&scene));
+}
+
 /// From the text of the files to a schedule.
 #[divan::bench(args = ["cones", "volume"])]
 fn check(bencher: Bencher, pipeline: &str) {

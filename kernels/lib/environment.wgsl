@@ -40,7 +40,7 @@ fn environment_point(direction: vec3f) -> vec2f {
     // Straight up and down there is no angle, and what atan2 gives is not defined.
     let upright = abs(direction.x) + abs(direction.z) < 1e-12;
     let around = atan2(select(direction.x, 0.0, upright), select(-direction.z, 1.0, upright)) - scene.environment_turn;
-    // Drivers' acos is off by thousandths of a degree.
+    // On lavapipe acos is off by up to 1.6e-4, atan2 by 4e-6.
     let down = atan2(select(length(direction.xz), 0.0, upright), direction.y);
     return vec2f(fract(around / 6.2831853 + 0.5), down / 3.1415927);
 }

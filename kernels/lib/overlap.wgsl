@@ -68,10 +68,6 @@ fn normal_of(p: array<vec3i, 3>) -> array<vec2u, 3> {
     );
 }
 
-fn less_64(a: vec2u, b: vec2u) -> bool {
-    return a.y < b.y || (a.y == b.y && a.x < b.x);
-}
-
 /// 0, 1, 2: which axis becomes z, that is the dominant one of the normal; of equal ones z, then x.
 fn dominant_axis(n: array<vec2u, 3>) -> u32 {
     let x = absolute_64(n[0]);

@@ -9,6 +9,11 @@ fn product(a: u32, b: u32) -> vec2u {
     return vec2u(a * b, x.y * y.y + (one >> 16u) + (other >> 16u));
 }
 
+/// Of numbers without sign.
+fn less_64(a: vec2u, b: vec2u) -> bool {
+    return a.y < b.y || (a.y == b.y && a.x < b.x);
+}
+
 fn sum_64(a: vec2u, b: vec2u) -> vec2u {
     let low = a.x + b.x;
     return vec2u(low, a.y + b.y + select(0u, 1u, low < a.x));
@@ -45,8 +50,7 @@ fn float_64(a: vec2u) -> f32 {
 
 fn sum_128(a: vec4u, b: vec4u) -> vec4u {
     let low = sum_64(a.xy, b.xy);
-    let carried = low.y < a.y || (low.y == a.y && low.x < a.x);
-    return vec4u(low, sum_64(sum_64(a.zw, b.zw), vec2u(select(0u, 1u, carried), 0u)));
+    return vec4u(low, sum_64(sum_64(a.zw, b.zw), vec2u(select(0u, 1u, less_64(low, a.xy)), 0u)));
 }
 
 fn product_128(a: vec2u, b: i32) -> vec4u {

@@ -196,12 +196,18 @@ impl Subject {
         let document = crate::document::parse(&library.pipeline(&self.pipeline)?)?;
         let crate::document::Root::Pipeline { parts, .. } = &document.root else { return Ok(()) };
         let is_role = parts.iter().any(|(role, _)| role.value == key);
-        match value.parse() {
-            _ if is_role => self.parts.push((key, value)),
-            Ok(simulated) if features::effects().any(|flag| flag == key) => {
-                self.effects.push((key, simulated))
-            }
-            _ => self.sets.push((key, value)),
+        if is_role {
+            self.parts.push((key, value));
+        } else if features::effects().any(|flag| flag == key) {
+            let simulated = value.parse().map_err(|_| {
+                Problem::input("effect-value", format!("`{key}` can't be `{value}`"))
+                    .help("true: the effect is simulated; false: it is left out")
+            })?;
+            // The last word counts, as it does for knobs.
+            self.effects.retain(|(other, _)| *other != key);
+            self.effects.push((key, simulated));
+        } else {
+            self.sets.push((key, value));
         }
         Ok(())
     }

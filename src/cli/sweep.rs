@@ -100,6 +100,10 @@ pub fn sweep(args: &SweepArgs) -> Result<()> {
                 .help("give all its values in one list")
                 .into());
         }
+        if base.coordinates().contains_key(axis.key()) {
+            let message = format!("`{}` is swept, and set for `{}` already", axis.key(), base.pipeline);
+            return Err(Problem::input("swept-and-set", message).help("leave one of the two away").into());
+        }
     }
     let order = if args.one_at_a_time { Order::OneAtATime } else { Order::Grid };
     let mut subjects = expand(&base, &axes, order)?;

@@ -288,7 +288,9 @@ fn sweeps_say_what_an_effect_costs_and_brings() {
     let sky = ["sweep", &lamp, "-p", "cones", "--effect", "scene.environment"];
     assert_eq!(bench.refused(&[&sky[..], &SMALL].concat()), (Some(2), "no-effect".to_owned()));
     let unknown = ["compare", &lamp, "-p", "cones,scene.emissive=perhaps"];
-    assert_eq!(bench.refused(&[&unknown[..], &SMALL].concat()), (Some(2), "unknown-knob".to_owned()));
+    assert_eq!(bench.refused(&[&unknown[..], &SMALL].concat()), (Some(2), "effect-value".to_owned()));
+    let both = ["sweep", &lamp, "-p", "cones,scene.emissive=false", "--effect", "scene.emissive"];
+    assert_eq!(bench.refused(&[&both[..], &SMALL].concat()), (Some(2), "swept-and-set".to_owned()));
 }
 
 #[test]

@@ -3,7 +3,7 @@
 //! double precision.
 
 use super::flaws::flawed;
-use super::shot::{Shot, mean};
+use super::shot::{Mean, Shot, mean};
 use super::stage::{Stage, matt, quad};
 use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
@@ -42,12 +42,11 @@ fn texel(row: usize, column: usize) -> DVec3 {
 }
 
 fn sky() -> Environment {
-    pictured(|i| texel(i / WIDTH, i % WIDTH))
+    pictured(texel)
 }
 
-/// Texels row by row.
-fn pictured(texel: impl Fn(usize) -> DVec3) -> Environment {
-    let texels = (0..WIDTH * HEIGHT).flat_map(|i| texel(i).as_vec3().to_array());
+fn pictured(texel: Texels) -> Environment {
+    let texels = (0..WIDTH * HEIGHT).flat_map(|i| texel(i / WIDTH, i % WIDTH).as_vec3().to_array());
     let picture = Picture::new(WIDTH as u32, HEIGHT as u32, 3, texels.collect()).expect("a picture");
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("sky.exr");
@@ -57,8 +56,11 @@ fn pictured(texel: impl Fn(usize) -> DVec3) -> Environment {
     sky
 }
 
+/// Of a row and a column.
+type Texels = fn(usize, usize) -> DVec3;
+
 /// Bilinear between the middles of texels; around the horizon, not over the poles.
-fn radiance(direction: DVec3, turn: f64) -> DVec3 {
+fn radiance(texel: Texels, direction: DVec3, turn: f64) -> DVec3 {
     let around = (direction.x.atan2(-direction.z) - turn) / TAU + 0.5;
     let column = around.rem_euclid(1.0) * WIDTH as f64 - 0.5;
     let row = direction.y.clamp(-1.0, 1.0).acos() / PI * HEIGHT as f64 - 0.5;
@@ -71,14 +73,14 @@ fn radiance(direction: DVec3, turn: f64) -> DVec3 {
 }
 
 /// The sky's light on a surface that faces `normal`.
-fn irradiance(normal: DVec3, turn: f64) -> DVec3 {
+fn irradiance(texel: Texels, normal: DVec3, turn: f64) -> DVec3 {
     const STEPS: usize = 800;
     let step = PI / STEPS as f64;
     let mut sum = DVec3::ZERO;
     for down in (0..STEPS).map(|i| (i as f64 + 0.5) * step) {
         for around in (0..2 * STEPS).map(|i| (i as f64 + 0.5) * step) {
             let direction = DVec3::new(down.sin() * around.sin(), down.cos(), -down.sin() * around.cos());
-            sum += radiance(direction, turn) * normal.dot(direction).max(0.0) * down.sin();
+            sum += radiance(texel, direction, turn) * normal.dot(direction).max(0.0) * down.sin();
         }
     }
     sum * step * step
@@ -89,7 +91,7 @@ fn a_pictured_sky_lights_as_it_is() {
     let normal = DVec3::new(0.6, 0.3, -0.7).normalize();
     let mut scene = facing(normal);
     scene.environment = Some(sky());
-    let truth = |normal, turn| ALBEDO / PI * irradiance(normal, turn);
+    let truth = |normal, turn| ALBEDO / PI * irradiance(texel, normal, turn);
     let mistakes = [
         ("not turned", truth(normal, 0.0)),
         ("turned the other way", truth(normal, -TURN)),
@@ -103,16 +105,50 @@ fn a_pictured_sky_lights_as_it_is() {
     assert!(!found.agrees(right), "texels of the same solid angle: {found:?}");
 }
 
-/// What a texel is, lies in its neighbours too: where these were not chosen for it, its light would come as rare sparks.
+fn sun(row: usize, column: usize) -> DVec3 {
+    DVec3::splat(if (row, column) == (3, 9) { 1e5 } else { 0.1 })
+}
+
+/// Chosen by what texels are themselves: running sums along each row, then over the rows by solid angle.
+fn chosen_by_itself(sky: &mut Environment, texel: Texels) {
+    let angle = |row: usize| (row as f64 / HEIGHT as f64 * PI).cos();
+    let first_row = sky.first_row();
+    let (mut above, mut rows) = (0.0, Vec::new());
+    for row in 0..HEIGHT {
+        let mut sum = 0.0;
+        let sums: Vec<f64> = (0..WIDTH)
+            .map(|column| {
+                sum += texel(row, column).y;
+                sum
+            })
+            .collect();
+        for (column, so_far) in sums.into_iter().enumerate() {
+            sky.texels[row * WIDTH + column].w = (so_far / sum) as f32;
+        }
+        above += sum * (angle(row) - angle(row + 1));
+        rows.push(above);
+    }
+    for (row, so_far) in rows.into_iter().enumerate() {
+        sky.texels[first_row + row].x = (so_far / above) as f32;
+    }
+}
+
+/// What a texel is, lies in its neighbours too: where these are not chosen for it, its light comes as rare sparks.
 #[test]
 fn a_small_sun_is_no_noise() {
-    let mut scene = facing(DVec3::new(0.6, 0.3, -0.7).normalize());
-    let sun = |i: usize| if i == 3 * WIDTH + 9 { 1e5 } else { 0.1 };
-    scene.environment = Some(pictured(|i| DVec3::splat(sun(i))));
-    let found = mean(&Shot::of(&scene).set("max_scatterings", 1).take(), "color");
-    println!("{found:?}");
-    assert!(found.error.x < 1.5e-3 * found.value.x, "{found:?}");
-    assert!(found.value.x > 100.0, "the sun is seen: {found:?}");
+    let normal = DVec3::new(0.6, 0.3, -0.7).normalize();
+    let right = ALBEDO / PI * irradiance(sun, normal, TURN);
+    let mut scene = facing(normal);
+    scene.environment = Some(pictured(sun));
+    let taken = |scene: &Scene| mean(&Shot::of(scene).set("max_scatterings", 1).take(), "color");
+    let calm = |found: &Mean| found.error.x < 1.5e-3 * right.x;
+    let found = taken(&scene);
+    println!("{found:?}, to be {right:?}");
+    assert!(found.agrees(right) && calm(&found), "{found:?} {right:?}");
+    chosen_by_itself(scene.environment.as_mut().expect("a sky"), sun);
+    let found = taken(&scene);
+    println!("chosen by itself: {found:?}");
+    assert!(!calm(&found), "{found:?}");
 }
 
 /// A scene without a triangle.
@@ -124,7 +160,7 @@ fn the_camera_sees_the_sky() {
     let seen = |turn: f64| -> DVec3 {
         let at = |i: usize| (i as f64 + 0.5) / 128.0 - 1.0;
         let ray = |i: usize| camera.forward + at(i % 256) * camera.right - at(i / 256) * camera.up;
-        (0..256 * 256).map(|i| radiance(ray(i).normalize(), turn)).sum::<DVec3>() / 65536.0
+        (0..256 * 256).map(|i| radiance(texel, ray(i).normalize(), turn)).sum::<DVec3>() / 65536.0
     };
     let mistakes = [("not turned", seen(0.0)), ("turned the other way", seen(-TURN))];
     let found = Shot::of(&scene).take();
