@@ -41,7 +41,6 @@ struct HalfPlanes {
 
 struct Overlap {
     corners: array<vec3i, 3>,
-    normal: array<vec2u, 3>,
     thin: bool,
     xy: HalfPlanes,
     yz: HalfPlanes,
@@ -131,7 +130,7 @@ fn inside(o: Overlap, planes: HalfPlanes, u: u32, v: u32, facing: u32, p: vec2i)
     if all(value > planes.doubt) {
         return true;
     }
-    let side = sign_64(o.normal[facing]);
+    let side = sign_64(normal_of(o.corners)[facing]);
     for (var i = 0u; i < 3u; i++) {
         let begin = o.corners[i];
         let end = o.corners[(i + 1u) % 3u];
@@ -147,7 +146,6 @@ fn overlap_of(p: array<vec3i, 3>, thin: bool, size: vec3i) -> Overlap {
     let n = normal_of(p);
     var out: Overlap;
     out.corners = p;
-    out.normal = n;
     out.thin = thin;
     let x = vec3i(p[0].x, p[1].x, p[2].x);
     let y = vec3i(p[0].y, p[1].y, p[2].y);
@@ -170,6 +168,17 @@ fn overlap_of(p: array<vec3i, 3>, thin: bool, size: vec3i) -> Overlap {
     return out;
 }
 
+/// First and last column of row y that may lie between the edges: no column outside does.
+fn row_range(o: Overlap, y: i32) -> vec2i {
+    let rest = o.xy.b * f32(y) + o.xy.c + o.xy.doubt;
+    let ends = -rest / select(o.xy.a, vec3f(1.0), o.xy.a == vec3f(0.0));
+    // Divisions may be off by some roundings.
+    let slack = 0.01 + 1e-6 * abs(ends);
+    let low = select(vec3f(-1e6), ends - slack, o.xy.a > vec3f(0.0));
+    let high = select(vec3f(1e6), ends + slack, o.xy.a < vec3f(0.0));
+    return vec2i(i32(ceil(max(low.x, max(low.y, low.z)))), i32(floor(min(high.x, min(high.y, high.z)))));
+}
+
 /// First and last voxel of column p whose slab the plane may meet, and those between which it surely does.
 fn column_range(o: Overlap, p: vec2i) -> vec4i {
     let shift = dot(o.slope, vec2f(p));
@@ -177,25 +186,25 @@ fn column_range(o: Overlap, p: vec2i) -> vec4i {
     return vec4i(floor(vec4f(ends - vec2f(o.z_doubt, -o.z_doubt), ends + vec2f(o.z_doubt, -o.z_doubt))));
 }
 
-/// On which side of the plane a point of units lies.
-fn side_of(o: Overlap, p: vec3i) -> i32 {
-    let begin = p - o.corners[0];
-    let xy = sum_128(product_128(o.normal[0], begin.x), product_128(o.normal[1], begin.y));
-    return sign_128(sum_128(xy, product_128(o.normal[2], begin.z)));
+/// On which side of the plane through a corner, with normal n, what lies at `begin` from that corner is.
+fn side_of(n: array<vec2u, 3>, begin: vec3i) -> i32 {
+    let xy = sum_128(product_128(n[0], begin.x), product_128(n[1], begin.y));
+    return sign_128(sum_128(xy, product_128(n[2], begin.z)));
 }
 
 /// Whether the plane meets the voxel: in its middle line along z, thin; anywhere, conservative.
 fn plane_meets(o: Overlap, voxel: vec3i) -> bool {
-    let low = voxel * UNITS;
+    let n = normal_of(o.corners);
+    let low = voxel * UNITS - o.corners[0];
     if o.thin {
-        let up = sign_64(o.normal[2]);
+        let up = sign_64(n[2]);
         let middle = low + vec3i(UNITS / 2, UNITS / 2, 0);
-        return up * side_of(o, middle) <= 0 && up * side_of(o, middle + vec3i(0, 0, UNITS)) > 0;
+        return up * side_of(n, middle) <= 0 && up * side_of(n, middle + vec3i(0, 0, UNITS)) > 0;
     }
-    let signs = vec3i(sign_64(o.normal[0]), sign_64(o.normal[1]), sign_64(o.normal[2]));
+    let signs = vec3i(sign_64(n[0]), sign_64(n[1]), sign_64(n[2]));
     let behind = low + select(vec3i(0), vec3i(UNITS), signs < vec3i(0));
     let before = low + select(vec3i(0), vec3i(UNITS), signs > vec3i(0));
-    return side_of(o, behind) <= 0 && side_of(o, before) >= 0;
+    return side_of(n, behind) <= 0 && side_of(n, before) >= 0;
 }
 
 /// Whether the triangle, which has an area, fills a voxel of its bounds; `range`: of its column.
