@@ -6,7 +6,7 @@ use crate::device::Gpu;
 use crate::expr::Value;
 use crate::frame::{self, Changes, Clock, Frame, calibrate};
 use crate::graph::Graph;
-use crate::problem::{Problem, Result};
+use crate::problem::{Problem, Problems, Result};
 use crate::schedule::Fate;
 use crate::session::Prepared;
 
@@ -63,7 +63,8 @@ impl<'a> Times<'a> {
             let mut frame = self.bench.with(&value, frame)?;
             for _ in 0..WARM_UP {
                 self.tell(scene, &values, done, of);
-                self.bench.with(&value, Ok(frame.run(&self.gpu, &Changes::All)?).map(drop))?;
+                let ran = frame.run(&self.gpu, &Changes::All).map(drop).map_err(Problems::from);
+                self.bench.with(&value, ran)?;
                 done += 1;
             }
             if frame.goes_on() {
