@@ -19,12 +19,10 @@ struct Placed {
     triangle: u32,
     /// In units, turned so that the columns run along z, and relative to the voxel `first`.
     corners: array<vec3i, 3>,
+    facing: Facing,
     /// Least voxel of its bounds, cut by the grid, turned; and the last one from there.
     first: vec3i,
     size: vec3i,
-    axis: u32,
-    /// Without area: its longest side, along z, stands for it.
-    flat: bool,
     /// Whether its bounds meet the grid.
     meets: bool,
 }
@@ -33,7 +31,7 @@ fn placed_of(triangle: u32) -> Placed {
     let t = triangles[triangle];
     var out: Placed;
     out.triangle = triangle;
-    var corners = array(
+    let corners = array(
         snapped(to_grid(corner_position(t.a, t.instance))),
         snapped(to_grid(corner_position(t.b, t.instance))),
         snapped(to_grid(corner_position(t.c, t.instance))),
@@ -41,37 +39,36 @@ fn placed_of(triangle: u32) -> Placed {
     let last = vec3i(values.grid_size) - 1;
     let least = voxel_of(min(corners[0], min(corners[1], corners[2])));
     let greatest = voxel_of(max(corners[0], max(corners[1], corners[2])));
-    if any(least > last) || any(greatest < vec3i(0)) {
+    out.meets = all(least <= last) && all(greatest >= vec3i(0));
+    if !out.meets {
         return out;
     }
-    out.meets = true;
     let low = max(least, vec3i(0));
-    let normal = normal_of(corners);
-    out.flat = all(normal[0] == vec2u(0u)) && all(normal[1] == vec2u(0u)) && all(normal[2] == vec2u(0u));
-    if out.flat {
-        out.axis = longest_axis(line_of(corners));
-    } else {
-        out.axis = dominant_axis(normal);
-    }
-    out.first = turn(low, out.axis);
-    out.size = turn(min(greatest, last) - low, out.axis);
-    for (var i = 0u; i < 3u; i++) {
-        out.corners[i] = turn(corners[i] - low * UNITS, out.axis);
-    }
+    out.facing = turned(facing_of(corners));
+    let axis = out.facing.axis;
+    out.first = turn(low, axis);
+    out.size = turn(min(greatest, last) - low, axis);
+    let begin = low * UNITS;
+    out.corners = array(turn(corners[0] - begin, axis), turn(corners[1] - begin, axis), turn(corners[2] - begin, axis));
     return out;
+}
+
+/// The voxel of the grid that lies at `voxel` from `first`.
+fn grid_voxel(placed: Placed, voxel: vec3i) -> vec3u {
+    return vec3u(turn_back(placed.first + voxel, placed.facing.axis));
+}
+
+fn prepared(placed: Placed) -> Overlap {
+    return overlap_of(placed.corners, placed.facing, knobs.separability == 6u, placed.size);
 }
 
 /// What the payload knows of it.
 fn placed_surface(placed: Placed) -> Surface {
     var corners: array<vec3f, 3>;
     for (var i = 0u; i < 3u; i++) {
-        corners[i] = vec3f(turn_back(placed.corners[i] + placed.first * UNITS, placed.axis)) / f32(UNITS);
+        corners[i] = vec3f(turn_back(placed.corners[i] + placed.first * UNITS, placed.facing.axis)) / f32(UNITS);
     }
     return surface_of(placed.triangle, corners);
-}
-
-fn is_thin() -> bool {
-    return knobs.separability == 6u;
 }
 
 /// A walk through the voxels that may be filled: column by column, row by row.
@@ -116,43 +113,23 @@ fn scan_fill(scan: ptr<function, Scan>, overlap: Overlap, placed: Placed, surfac
         let voxel = vec3i((*scan).p, (*scan).z);
         (*scan).z += 1;
         if fills(overlap, (*scan).range, voxel) {
-            add_fragment(surface, vec3u(turn_back(placed.first + voxel, placed.axis)));
+            add_fragment(surface, grid_voxel(placed, voxel));
         }
     }
 }
 
-/// Fills the voxels that a triangle without area meets in a layer across it.
-fn fill_layer(line: Line, placed: Placed, surface: Surface, z: i32) {
-    let range = line_range(line, z);
-    for (var y = max(range.y, 0); y <= min(range.w, placed.size.y); y++) {
-        for (var x = max(range.x, 0); x <= min(range.z, placed.size.x); x++) {
-            let voxel = vec3i(x, y, z);
-            if line_meets(line, voxel) {
-                add_fragment(surface, vec3u(turn_back(placed.first + voxel, placed.axis)));
-            }
-        }
-    }
-}
-
-/// The whole triangle, by the calling thread.
-fn voxelize_all(placed: Placed) {
+/// Rows from `first_row` to `last_row`, by the calling thread.
+fn fill_rows(placed: Placed, first_row: i32, last_row: i32) {
     let surface = placed_surface(placed);
-    if placed.flat {
-        let line = line_of(placed.corners);
-        for (var z = 0; z <= placed.size.z; z++) {
-            fill_layer(line, placed, surface, z);
-        }
-        return;
-    }
-    let overlap = overlap_of(placed.corners, is_thin(), placed.size);
+    let overlap = prepared(placed);
     // One loop through rows, columns and voxels: threads whose triangles have other sizes wait less for each other than
     // in a loop for each axis.
-    var scan = scan_begin(0);
-    let columns = (placed.size.x + 1) * (placed.size.y + 1);
+    var scan = scan_begin(first_row);
+    let columns = (placed.size.x + 1) * (last_row - first_row + 1);
     let most = columns * (placed.size.z + 1) + placed.size.y + 2;
     for (var k = 0; k < most; k++) {
         scan_fill(&scan, overlap, placed, surface);
-        if scan.z > scan.last_z && !scan_on(&scan, overlap, placed, placed.size.y) {
+        if scan.z > scan.last_z && !scan_on(&scan, overlap, placed, last_row) {
             break;
         }
     }

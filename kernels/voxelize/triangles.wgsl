@@ -19,7 +19,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workg
     if triangle < geometry.triangles {
         let placed = placed_of(geometry.first + triangle);
         if placed.meets {
-            voxelize_all(placed);
+            fill_rows(placed, 0, placed.size.y);
         }
     }
 }
