@@ -2,8 +2,8 @@
 //!
 //! Each is a JSON file of its own in the folder `tuned` of the user's folder, written whole or not at all, so that
 //! several tunings at once don't get in each other's way. It holds for one adapter (name, driver, its version), one
-//! pipeline, its parts and a knob; a later one takes its place. Scenes, size and other knobs are those it was found with,
-//! and bind nobody.
+//! pipeline, its parts and a knob; a later one takes its place. Scenes, size and other knobs are those it was found
+//! with, and bind nobody.
 
 use crate::expr::Value;
 use crate::picture;
@@ -144,8 +144,9 @@ impl Shelf {
         Ok(all)
     }
 
-    /// The kept values for a planned pipeline on an adapter, except of knobs that are set. Errors are inputs: `not-tuned`
-    /// (there is none), `tuned-not-allowed` (the knob does not allow it any more), `tuned-file` (a file is broken).
+    /// The kept values for a planned pipeline on an adapter, except of knobs that are set. Errors are inputs:
+    /// `not-tuned` (there is none), `tuned-not-allowed` (the knob does not allow it any more),
+    /// `tuned-file` (a file is broken).
     pub fn uses(&self, plan: &Plan, adapter: &Adapter) -> Result<Uses> {
         let all = self.all()?;
         let of_plan: Vec<&Kept> = all

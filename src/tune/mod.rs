@@ -9,9 +9,10 @@
 //! | [`values`](mod@values) | from a knob to what is tried |
 //! | [`time`](mod@time), [`error`](mod@error) | what is to be least |
 //!
-//! Of several scenes, the least sum of ratios to each scene's best counts. A time is that of a frame on the GPU in which
-//! every stage runs, or the sum of some of its stages; an error is a run's relMSE as [`crate::compare`] measures it, and
-//! those that are within the reference's own noise count as alike. What is found can be kept: [`crate::tuned`].
+//! Of several scenes, the least sum of ratios to each scene's best counts. A time is that of a frame on the GPU in
+//! which every stage runs, or the sum of some of its stages; an error is a run's relMSE as [`crate::compare`] measures
+//! it, and those that are within the reference's own noise count as alike. What is found can be kept:
+//! [`crate::tuned`].
 
 pub mod error;
 pub mod estimate;

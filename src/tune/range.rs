@@ -92,7 +92,7 @@ impl Range {
         ((to - from) * STEPS > 1.5 && low < middle && middle < high).then_some(middle)
     }
 
-    /// The numbers to begin with, rising: all, if they are few whole ones, or else some at equal distances on the scale.
+    /// The numbers to begin with, rising: all, if they are few whole ones, or else nine at equal distances.
     pub fn scan(&self) -> Vec<f64> {
         let mut numbers: Vec<f64> = match self.whole && self.most - self.least < FEW {
             true => (0..=(self.most - self.least) as u32).map(|i| self.least + f64::from(i)).collect(),
