@@ -112,7 +112,9 @@ fn only_what_changed_runs() {
     assert!(with(&light, "light_maps/") && with(&light, "light/") && with(&light, "trace/"));
     let block = after(&[Cause::Moving]);
     assert!(!block.contains("voxelize/still") && block.contains("voxelize/moving"));
-    assert!(block.contains("payload/clear_sums_moving") && with(&block, "light/") && with(&block, "surfaces/"));
+    assert!(
+        block.contains("payload/clear_sums_moving") && with(&block, "light/") && with(&block, "surfaces/")
+    );
     let camera = after(&[Cause::Camera]);
     assert_eq!(
         camera.iter().map(String::as_str).collect::<Vec<_>>(),
