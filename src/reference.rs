@@ -46,23 +46,26 @@ pub struct Made {
     pub knobs: BTreeMap<String, serde_json::Value>,
 }
 
+/// The folder that `VOXGI_CACHE` names, or else `voxgi` in the user's cache folder.
+pub fn folder_of_user() -> Result<PathBuf> {
+    let variable = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let folder = variable("VOXGI_CACHE")
+        .or_else(|| Some(variable("XDG_CACHE_HOME")?.join("voxgi")))
+        .or_else(|| Some(variable("HOME")?.join(".cache/voxgi")));
+    Ok(folder.ok_or_else(|| {
+        Problem::input("no-cache", "there is no folder to keep anything in")
+            .help("set VOXGI_CACHE to a folder")
+    })?)
+}
+
 impl Cache {
     pub fn at(folder: PathBuf) -> Self {
         Self { folder }
     }
 
-    /// The folder that `VOXGI_CACHE` names, or else `voxgi` in the user's cache folder.
+    /// The one in [`folder_of_user`].
     pub fn of_user() -> Result<Self> {
-        let variable =
-            |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-        let folder = variable("VOXGI_CACHE")
-            .or_else(|| Some(variable("XDG_CACHE_HOME")?.join("voxgi")))
-            .or_else(|| Some(variable("HOME")?.join(".cache/voxgi")));
-        let folder = folder.ok_or_else(|| {
-            Problem::input("no-cache", "there is no folder to keep references in")
-                .help("set VOXGI_CACHE to a folder")
-        })?;
-        Ok(Self::at(folder.join("references")))
+        Ok(Self::at(folder_of_user()?.join("references")))
     }
 
     /// The reference of a scene by the pipeline that `request` names, good enough for `until`: from the cache, as
