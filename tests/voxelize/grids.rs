@@ -30,11 +30,21 @@ fn cubes_of_any_resolution() {
     }
 }
 
-#[test]
-fn boxes_of_any_resolution() {
-    for (i, resolution) in RESOLUTIONS.into_iter().enumerate() {
+fn boxes(resolutions: impl Iterator<Item = i64>) {
+    for (i, resolution) in resolutions.enumerate() {
         let mut parts = [1.0, 0.5, 0.3125];
         parts.rotate_right(i % 3);
         voxelize("a box", &Lattice::oblong(resolution, parts), resolution);
     }
+}
+
+#[test]
+fn boxes_of_any_resolution() {
+    boxes(RESOLUTIONS.into_iter().filter(|resolution| resolution % 2 == 0 || *resolution > 5));
+}
+
+/// Where the scene takes half the grid, and that is no whole number of voxels.
+#[test]
+fn boxes_of_few_voxels() {
+    boxes(RESOLUTIONS.into_iter().filter(|resolution| resolution % 2 == 1 && *resolution < 6));
 }

@@ -49,12 +49,10 @@ impl Lattice {
     pub fn oblong(resolution: i64, parts: [f64; 3]) -> Self {
         let extent = parts.map(|part| (part * side(resolution) as f64) as i64);
         let room = resolution * VOXEL - side(resolution);
-        let size =
-            extent.map(|extent| (extent.div_euclid(VOXEL) + i64::from(extent % VOXEL > 0)) * VOXEL + room);
+        let size = extent.map(|extent| (extent + room + VOXEL - 1).div_euclid(VOXEL));
         let cube = Self::cube(resolution);
         let high = [0, 1, 2].map(|axis| cube.low[axis] + extent[axis]);
-        // Half voxels of room do not count.
-        let grid = Grid { part: "grid/box", size: size.map(|units| units / VOXEL), ..cube.grid };
+        let grid = Grid { part: "grid/box", size, ..cube.grid };
         Self { grid, high, ..cube }
     }
 

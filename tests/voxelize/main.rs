@@ -17,5 +17,6 @@ mod scans;
 mod sums;
 #[path = "../support/scenes.rs"]
 mod support;
+mod textures;
 mod voxelizer;
 mod wide;

@@ -28,10 +28,6 @@ pub enum Rule {
 impl Rule {
     pub const BOTH: [Self; 2] = [Self::Thin, Self::Conservative];
 
-    pub fn other(self) -> Self {
-        if self == Self::Thin { Self::Conservative } else { Self::Thin }
-    }
-
     /// The knob's value.
     pub fn separability(self) -> &'static str {
         if self == Self::Thin { "6" } else { "26" }

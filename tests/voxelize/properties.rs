@@ -4,10 +4,10 @@
 use crate::lattice::Lattice;
 use crate::meshes::{Shape, Solid, solids};
 use crate::model::{Model, Part};
-use crate::oracle::{Point, Rule, Triangle, VOXEL, number};
+use crate::oracle::{Point, Rule, Triangle, VOXEL, differences, number};
 use crate::random::{Region, hardened};
 use crate::sums::Sums;
-use crate::voxelizer::{Grid, METHODS, Way, counted};
+use crate::voxelizer::{Grid, METHODS, Method, Way, counted};
 use fastrand::Rng;
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
@@ -48,7 +48,7 @@ fn leaks(solids: &[Solid], counts: &[u32]) -> (usize, usize) {
     deep.fold((0, 0), |(all, out), voxel| (all + 1, out + usize::from(reached[number(voxel, [SIDE; 3])])))
 }
 
-fn voxelized(scene: &Scene, method: &'static str) -> [Vec<u32>; 2] {
+fn voxelized(scene: &Scene, method: Method) -> [Vec<u32>; 2] {
     Rule::BOTH.map(|rule| counted(scene, &Grid::cube(SIDE), &Way { method, payload: "payload/sums", rule }))
 }
 
@@ -182,4 +182,30 @@ fn what_moves_adds_to_what_is_still() {
             }
         }
     }
+}
+
+/// More large triangles, each of several chunks, than a queue of 65536 chunks takes: none is lost, none is done twice.
+#[test]
+fn a_full_queue_loses_nothing() {
+    let lattice = Lattice::cube(100);
+    let mut rng = Rng::with_seed(16);
+    let (low, high) = (lattice.low[0], lattice.high[0]);
+    let mut near = |[x, y, z]: Point| [x, y, z].map(|x| (x + rng.i64(-VOXEL..=VOXEL)).clamp(low, high));
+    // Thin, from one corner of the grid's square to the other: eleven chunks where they lie flat.
+    let triangles: Vec<Triangle> = (0..16_000)
+        .map(|i| {
+            let height = low + (high - low) * (i % 97) / 97;
+            let end = near([high, high, height]);
+            [near([low, low, height]), end, near(end)]
+        })
+        .collect();
+    let scene = lattice.scene(&lattice.fixed(&triangles));
+    let counts = METHODS.map(|method| {
+        let way = Way { method, payload: "payload/sums", rule: Rule::Thin };
+        counted(&scene, &lattice.grid, &way)
+    });
+    assert!(counts[0].iter().max() > Some(&3), "triangles meet in voxels");
+    let found: Vec<_> =
+        METHODS.iter().zip(&counts).map(|(m, c)| (m.to_string(), differences(c, &counts[0]))).collect();
+    assert!(found.iter().all(|(_, differing)| *differing == 0), "{found:?}");
 }

@@ -85,7 +85,7 @@ fn triangles_that_are_hard() {
     let mut some =
         |number, voxels: i64, step| hardened(region.triangles(&mut rng, number, voxels * VOXEL, step), step);
     let triangles = [some(1500, 2, VOXEL / 8), some(300, 8, 1), some(60, 29, VOXEL / 2)].concat();
-    assert!(touched(&lattice, &triangles) > 100);
+    assert!(touched(&lattice, &triangles) > 10);
     check("hard", &lattice, &triangles, 1000);
 }
 

@@ -1,7 +1,7 @@
 //! What the payload of sums holds, word by word.
 
 use crate::oracle::{Point, Rule, number};
-use crate::voxelizer::{Grid, Way, picture};
+use crate::voxelizer::{Grid, Method, Way, picture};
 use glam::DVec3;
 use voxgi::scene::Scene;
 
@@ -24,7 +24,7 @@ pub struct Means {
 
 impl Sums {
     /// Of a scene that does not emit.
-    pub fn of(scene: &Scene, grid: &Grid, method: &'static str, rule: Rule) -> Self {
+    pub fn of(scene: &Scene, grid: &Grid, method: Method, rule: Rule) -> Self {
         let way = Way { method, payload: "payload/sums", rule };
         let image = picture("words", "words", scene, grid, &way);
         let words =

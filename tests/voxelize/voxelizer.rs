@@ -2,6 +2,7 @@
 
 use crate::lattice::Lattice;
 use crate::oracle::{self, Rule, Ties, Triangle};
+use std::fmt;
 use std::path::Path;
 use std::sync::OnceLock;
 use voxgi::device::{Gpu, LimitSet};
@@ -11,8 +12,38 @@ use voxgi::problem::Problems;
 use voxgi::scene::Scene;
 use voxgi::session::{Request, prepare};
 
+/// A part of the role `voxelize`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Method {
+    part: &'static str,
+    /// The knob that says which triangles are small: low enough that scenes here have both sorts.
+    cutoff: Option<&'static str>,
+}
+
+impl Method {
+    const fn new(part: &'static str) -> Self {
+        Self { part, cutoff: None }
+    }
+
+    const fn with_cutoff(part: &'static str) -> Self {
+        Self { part, cutoff: Some("8") }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.part)
+    }
+}
+
 /// All that fill the same voxels.
-pub const METHODS: [&str; 1] = ["voxelize/triangles"];
+pub const METHODS: [Method; 5] = [
+    Method::new("voxelize/triangles"),
+    Method::new("voxelize/fragments"),
+    Method::with_cutoff("voxelize/hybrid"),
+    Method::with_cutoff("voxelize/classified"),
+    Method::with_cutoff("voxelize/queue"),
+];
 
 fn gpu() -> &'static Gpu {
     static GPU: OnceLock<Gpu> = OnceLock::new();
@@ -40,7 +71,7 @@ impl Grid {
 /// Who voxelizes, and how.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
-    pub method: &'static str,
+    pub method: Method,
     pub payload: &'static str,
     pub rule: Rule,
 }
@@ -49,7 +80,8 @@ pub struct Way {
 pub fn picture(pipeline: &str, shown: &str, scene: &Scene, grid: &Grid, way: &Way) -> Image {
     let mut sets = vec![("separability".to_owned(), way.rule.separability().to_owned())];
     sets.extend(grid.knobs.iter().map(|(knob, value)| ((*knob).to_owned(), value.clone())));
-    let parts = [("grid", grid.part), ("payload", way.payload), ("voxelize", way.method)];
+    sets.extend(way.method.cutoff.map(|cutoff| ("cutoff".to_owned(), cutoff.to_owned())));
+    let parts = [("grid", grid.part), ("payload", way.payload), ("voxelize", way.method.part)];
     let parts = parts.map(|(role, part)| (role.to_owned(), part.to_owned())).to_vec();
     let request = Request { pipeline: pipeline.to_owned(), size: [8, 8], sets, parts, ..Request::default() };
     run(&request, shown, scene)
