@@ -120,11 +120,12 @@ fn means_of_a_textured_square_are_those_of_its_areas() {
         u: [36 * VOXEL, -12 * VOXEL, 18 * VOXEL],
         v: [18 * VOXEL, 36 * VOXEL, -12 * VOXEL],
     };
-    // Where the surface changes its voxel within a column, the point nearest to the middle is not the area's own.
-    for (name, square, side, voxel_error) in [
-        ("straight, coarse", &straight, 16, 0.5 / 255.0),
-        ("straight, fine", &straight, 256, 2.0 / 255.0),
-        ("turned, coarse", &turned, 12, 0.15),
+    // Errors of a voxel's mean, thin and conservative. A triangle that meets no more than a corner of a voxel has a fragment
+    // there too, of a point that lies beside the voxel's area; fragments of both triangles count the same.
+    for (name, square, side, voxel_errors) in [
+        ("straight, coarse", &straight, 16, [0.5 / 255.0, 0.15]),
+        ("straight, fine", &straight, 256, [2.0 / 255.0, 0.25]),
+        ("turned, coarse", &turned, 12, [0.15, 0.25]),
     ] {
         let texture = Texture::random(side, 14);
         let Square { corner, u, v } = square;
@@ -138,7 +139,7 @@ fn means_of_a_textured_square_are_those_of_its_areas() {
         let scene = lattice.loaded(&Model { parts, image: Some((texture.png(), clamped)), motion: None });
         let areas_of = |texture| areas(square, texture, size);
         let (expected, wrong) = (areas_of(&texture), areas_of(&Texture::random(side, 15)));
-        for rule in Rule::BOTH {
+        for (rule, voxel_error) in Rule::BOTH.into_iter().zip(voxel_errors) {
             for method in METHODS {
                 let sums = Sums::of(&scene, &lattice.grid, method, rule);
                 let (of_all, of_voxel) = errors(&sums, &expected, texture.mean(), size);

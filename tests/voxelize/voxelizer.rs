@@ -118,7 +118,7 @@ pub struct Case<'a> {
 }
 
 impl Case<'_> {
-    /// By all methods, both rules and both payloads not a voxel more and none less.
+    /// By all methods, both rules and (for one rule) both payloads not a voxel more and none less.
     pub fn check(&self) {
         let triangles = oracle::snapped(self.triangles);
         let count = |rule| oracle::count(&triangles, self.grid.size, rule, Ties::Count);
@@ -128,7 +128,9 @@ impl Case<'_> {
             assert!(oracle::filled(exact) > 0, "{}: nothing is filled", self.name);
             let bits: Vec<u32> = exact.iter().map(|count| u32::from(*count > 0)).collect();
             for method in METHODS {
-                for (payload, exact) in [("payload/sums", exact), ("payload/bits", &bits)] {
+                // Bits are set as sums are added to; one rule will do.
+                let payloads = [("payload/sums", exact), ("payload/bits", &bits)];
+                for (payload, exact) in payloads.into_iter().take(1 + i) {
                     let way = Way { method, payload, rule };
                     let counted = counted(self.scene, self.grid, &way);
                     self.agree(&counted, exact, &triangles, &way);
