@@ -17,7 +17,21 @@ pub(super) fn modules(players: &[(&Player, ScopeId)], world: &mut World<'_>) -> 
     let mut modules: BTreeMap<String, Module> = BTreeMap::new();
     for (player, scope) in players {
         for (name, module) in player.modules() {
-            let found = Module { kernel: module.value.clone(), scope: *scope, place: module.place.clone() };
+            let mut found = Module {
+                kernel: module.value.clone(),
+                scope: *scope,
+                place: module.place.clone(),
+                moving: BTreeMap::new(),
+                order_dependent: None,
+            };
+            // What is said of the part's module holds for that of its own role.
+            if let Root::Part { moving, order_dependent, .. } = &player.document.root
+                && name == player.role
+            {
+                let names = moving.iter().map(|(from, to)| (from.value.clone(), to.value.clone()));
+                found.moving = names.collect();
+                found.order_dependent = order_dependent.as_ref().map(|reason| reason.value.clone());
+            }
             if let Some(first) = modules.get(name) {
                 let problem =
                     Problem::input("duplicate-module", format!("two modules stand behind `role/{name}`"))
