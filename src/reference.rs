@@ -53,16 +53,11 @@ impl Cache {
 
     /// The folder that `VOXGI_CACHE` names, or else `voxgi` in the user's cache folder.
     pub fn of_user() -> Result<Self> {
-        let variable =
-            |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-        let folder = variable("VOXGI_CACHE")
-            .or_else(|| Some(variable("XDG_CACHE_HOME")?.join("voxgi")))
-            .or_else(|| Some(variable("HOME")?.join(".cache/voxgi")));
-        let folder = folder.ok_or_else(|| {
+        let folder = crate::cache::folder("references").ok_or_else(|| {
             Problem::input("no-cache", "there is no folder to keep references in")
                 .help("set VOXGI_CACHE to a folder")
         })?;
-        Ok(Self::at(folder.join("references")))
+        Ok(Self::at(folder))
     }
 
     /// The reference of a scene by the pipeline that `request` names, good enough for `until`: from the cache, as

@@ -9,7 +9,7 @@ use crate::problem::{Place, Problem, Problems, Result, Source};
 use std::cell::OnceCell;
 
 /// What every scene gives, by the names that kernels call it.
-pub const SCENE_RESOURCES: [&str; 11] = crate::scene::buffers::NAMES;
+pub const SCENE_RESOURCES: [&str; 12] = crate::scene::buffers::NAMES;
 
 /// The part that plays a role.
 pub(super) struct Player {
