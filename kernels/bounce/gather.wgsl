@@ -9,8 +9,8 @@ import lib/filled;
 import lib/gather;
 import lib/math;
 import lib/two_sided;
-import lib/voxel_sums;
 import role/storage;
+import role/voxels;
 
 /// Premultiplied radiance; opacity 1 where there is a surface.
 var bounced: texture_storage_3d<rgba16float, write>;
@@ -32,7 +32,7 @@ fn main(
 ) {
     let size = textureDimensions(bounced);
     let inside = all(id < size);
-    let filled = inside && is_filled(id, size.x);
+    let filled = inside && is_filled(id);
     if inside && !filled {
         textureStore(bounced, id, vec4f(0.0));
     }
@@ -40,9 +40,8 @@ fn main(
         return;
     }
     let voxel = filled_voxel(local, group);
-    let surfel = surfel_of(voxel, size.x);
+    let surfel = surfel_of(voxel);
     let n = unit_or(surfel.normal, vec3f(0.0, 1.0, 0.0));
-    let resolution = f32(size.x);
-    let sides = Sides(gather(surfel.position, n, resolution), gather(surfel.position, -n, resolution));
+    let sides = Sides(gather(surfel.position, n), gather(surfel.position, -n));
     textureStore(bounced, voxel, vec4f(min(surfel.albedo / PI * brighter(sides), vec3f(65504.0)), 1.0));
 }

@@ -60,16 +60,16 @@ const LEAST_TRANSMITTANCE: f32 = 0.001;
 const MOST_STEPS: u32 = 512u;
 
 /// Distance along `direction` to where the grid ends.
-fn grid_exit(origin: vec3f, direction: vec3f, resolution: f32) -> f32 {
+fn grid_exit(origin: vec3f, direction: vec3f) -> f32 {
     let forward = direction > vec3f(0.0);
-    let wall = select(vec3f(0.0), vec3f(resolution), forward);
+    let wall = select(vec3f(0.0), vec3f(values.grid_size), forward);
     let slope = select(min(direction, vec3f(-1e-6)), max(direction, vec3f(1e-6)), forward);
     let exit = (wall - origin) / slope;
     return max(min(exit.x, min(exit.y, exit.z)), 0.0);
 }
 
 /// A cone from a point (world) of a surface with unit normal `n` on the side where the cone starts.
-fn cone_begin(position: vec3f, n: vec3f, direction: vec3f, resolution: f32) -> Cone {
+fn cone_begin(position: vec3f, n: vec3f, direction: vec3f) -> Cone {
     let lift = LIFT * norm_1(n);
     let origin = to_grid(position) + n * lift;
     return Cone(
@@ -79,7 +79,7 @@ fn cone_begin(position: vec3f, n: vec3f, direction: vec3f, resolution: f32) -> C
         max(dot(n, direction), LEAST_RISE),
         CLEARANCE * norm_1(n),
         0.5,
-        grid_exit(origin, direction, resolution),
+        grid_exit(origin, direction),
         0.0,
         0.0,
         0.0,

@@ -18,14 +18,14 @@ struct GatherKnobs {
 
 var<uniform> knobs: GatherKnobs;
 
-/// Irradiance on the side of `n` at a point (world) of a surface in a grid of `resolution` voxels a side.
-fn gather(position: vec3f, n: vec3f, resolution: f32) -> vec3f {
+/// Irradiance on the side of `n` at a point (world) of a surface.
+fn gather(position: vec3f, n: vec3f) -> vec3f {
     let cones = ConeKnobs(knobs.cone_step, knobs.cone_footprint, knobs.cone_density);
     let frame = frame_around(n);
     var axis = vec4f(0.0);
     var sides = vec4f(0.0);
     for (var i = 0u; i < CONES; i++) {
-        var cone = cone_begin(position, n, frame * cone_axis(i), resolution);
+        var cone = cone_begin(position, n, frame * cone_axis(i));
         var radiance = vec4f(0.0);
         for (var k = 0u; k < MOST_STEPS && cone_advance(&cone, cones); k++) {
             let found = seen_at(cone_position(cone), cone.level, cone.direction);

@@ -1,10 +1,14 @@
-// The voxel grid: a cube of cubes, aligned with the axes of the world.
+// The voxel grid: a box of cubes, aligned with the axes of the world.
 
 struct GridValues {
     /// Corner with the smallest coordinates, metres.
     grid_min: vec3f,
     /// Edge of a voxel, metres.
     voxel_size: f32,
+    /// Voxels along each axis.
+    grid_size: vec3u,
+    /// Largest side of the scene, in voxels.
+    scene_side: f32,
 }
 
 var<uniform> values: GridValues;
@@ -19,6 +23,6 @@ fn from_grid(position: vec3f) -> vec3f {
 }
 
 /// Number of a voxel in a dense buffer: x fastest.
-fn voxel_number(voxel: vec3u, resolution: u32) -> u32 {
-    return (voxel.z * resolution + voxel.y) * resolution + voxel.x;
+fn voxel_number(voxel: vec3u) -> u32 {
+    return (voxel.z * values.grid_size.y + voxel.y) * values.grid_size.x + voxel.x;
 }

@@ -10,9 +10,9 @@
 // texels.
 
 import lib/filled;
-import lib/voxel_sums;
 import lib/math;
 import lib/two_sided;
+import role/voxels;
 @if(lights.total > 0) import lib/lights;
 @if(scene.emissive || scene.environment) import lib/gather;
 @if(scene.emissive || scene.environment) import role/storage;
@@ -80,7 +80,7 @@ fn main(
 ) {
     let size = textureDimensions(lit);
     let inside = all(id < size);
-    let filled = inside && is_filled(id, size.x);
+    let filled = inside && is_filled(id);
     if inside && !filled {
         store(id, vec4f(0.0));
     }
@@ -92,15 +92,15 @@ fn main(
         atomicAdd(&counters.filled_voxels, count);
     }
     let voxel = filled_voxel(local, group);
-    let surfel = surfel_of(voxel, size.x);
+    let surfel = surfel_of(voxel);
     let n = unit_or(surfel.normal, vec3f(0.0, 1.0, 0.0));
     var sides = Sides(vec3f(0.0), vec3f(0.0));
     @if(lights.total > 0) {
         add_lights(&sides, surfel, n);
     }
     @if(scene.emissive || scene.environment) {
-        sides.front += gather(surfel.position, n, f32(size.x));
-        sides.back += gather(surfel.position, -n, f32(size.x));
+        sides.front += gather(surfel.position, n);
+        sides.back += gather(surfel.position, -n);
     }
     store(voxel, vec4f(surfel.albedo / PI * brighter(sides), 1.0));
 }

@@ -14,14 +14,14 @@ var emitted: texture_3d<f32>;
 var volume_sampler: sampler;
 
 /// Position in texture coordinates, and whether it lies in the grid.
-fn volume_coordinates(position: vec3f, resolution: u32) -> vec4f {
-    let at = to_grid(position) / f32(resolution);
+fn volume_coordinates(position: vec3f, size: vec3u) -> vec4f {
+    let at = to_grid(position) / vec3f(size);
     return vec4f(at, select(0.0, 1.0, all(at >= vec3f(0.0)) && all(at <= vec3f(1.0))));
 }
 
 /// Light that comes towards one who looks along `direction`; nothing outside the grid.
 fn reflected_at(position: vec3f, level: f32, direction: vec3f) -> vec4f {
-    let at = volume_coordinates(position, textureDimensions(reflected).x);
+    let at = volume_coordinates(position, textureDimensions(reflected));
     return at.w * textureSampleLevel(reflected, volume_sampler, at.xyz, level);
 }
 
@@ -32,11 +32,16 @@ fn reflected_voxel(voxel: vec3i, level: i32, direction: vec3f) -> vec4f {
 
 @if(scene.emissive || scene.environment)
 fn emitted_at(position: vec3f, level: f32, direction: vec3f) -> vec4f {
-    let at = volume_coordinates(position, textureDimensions(emitted).x);
+    let at = volume_coordinates(position, textureDimensions(emitted));
     return at.w * textureSampleLevel(emitted, volume_sampler, at.xyz, level);
 }
 
 @if(scene.emissive || scene.environment)
 fn emitted_voxel(voxel: vec3i, level: i32, direction: vec3f) -> vec4f {
     return textureLoad(emitted, voxel, level);
+}
+
+/// Mip levels that are stored.
+fn volume_levels() -> u32 {
+    return textureNumLevels(reflected);
 }

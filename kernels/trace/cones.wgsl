@@ -15,7 +15,6 @@ import role/storage;
 @if(scene.environment) import lib/environment;
 
 struct Knobs {
-    resolution: u32,
     cone_step: f32,
     cone_footprint: f32,
     cone_density: f32,
@@ -78,11 +77,10 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         let position = pixel_position(pixel, size, seen);
         let plane = unit_or(textureLoad(face_normal, pixel, 0).xyz, vec3f(0.0, 1.0, 0.0));
         let frame = frame_around(unit_or(textureLoad(normal, pixel, 0).xyz, plane));
-        let resolution = f32(knobs.resolution);
-        let ao_end = knobs.ao_distance * (resolution - 3.0);
+        let ao_end = knobs.ao_distance * values.scene_side;
         sides.reflected.a = 0.0;
         for (var i = 0u; i < CONES; i++) {
-            let found = trace_cone(cone_begin(position, plane, frame * cone_axis(i), resolution), ao_end);
+            let found = trace_cone(cone_begin(position, plane, frame * cone_axis(i)), ao_end);
             if i == 0u {
                 axis = found;
             } else {

@@ -1,7 +1,10 @@
-// Voxelizes what does not move: one thread for each triangle adds its fragments to the voxels' sums (lib/voxelizer).
+// Voxelizes with one thread for each triangle: it goes through all columns of its triangle (R 4.1.1).
+//
+// Reads per triangle 3 corners and what the payload wants; writes per fragment what the payload does. Large triangles
+// are slow (R figure 4.6): nothing shares their work.
 
+import lib/columns;
 import lib/dispatch;
-import lib/voxelizer;
 
 struct Geometry {
     first: u32,
@@ -10,31 +13,13 @@ struct Geometry {
 
 var<uniform> geometry: Geometry;
 
-struct Counters {
-    fragments: atomic<u32>,
-}
-
-var<storage, read_write> counters: Counters;
-
-var<workgroup> group_fragments: atomic<u32>;
-
-fn first_touch(voxel: u32) {}
-
 @compute @workgroup_size(64)
-fn main(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(num_workgroups) workgroups: vec3u,
-    @builtin(local_invocation_index) local: u32,
-) {
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
     let triangle = linear_index(id, workgroups, 64u);
     if triangle < geometry.triangles {
-        let fragments = voxelize(geometry.first + triangle);
-        if fragments > 0u {
-            atomicAdd(&group_fragments, fragments);
+        let placed = placed_of(geometry.first + triangle);
+        if placed.meets {
+            fill_rows(placed, 0, placed.size.y);
         }
-    }
-    workgroupBarrier();
-    if local == 0u && atomicLoad(&group_fragments) > 0u {
-        atomicAdd(&counters.fragments, atomicLoad(&group_fragments));
     }
 }

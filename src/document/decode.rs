@@ -10,7 +10,7 @@ use crate::problem::Problem;
 
 const SHARED: [&str; 7] = ["about", "knobs", "values", "samplers", "resources", "stages", "lacks"];
 const OF_PIPELINES: [&str; 3] = ["parts", "outputs", "progress"];
-const OF_PARTS: [&str; 3] = ["role", "module", "exports"];
+const OF_PARTS: [&str; 4] = ["role", "module", "modules", "exports"];
 
 pub(super) const COMPARES: [(&str, Compare); 6] = [
     ("Less", Compare::Less),
@@ -104,8 +104,10 @@ impl Reader<'_> {
     fn part(&mut self, fields: &Fields<'_>) -> Option<Root> {
         let role = self.required(fields, "role").and_then(|tree| self.name(tree));
         let module = self.optional(fields.get("module"), Self::text);
+        let modules = self.entries(fields.get("modules"), Self::text);
         let exports = self.optional(fields.get("exports"), |reader, tree| reader.list(tree, Self::name));
-        Some(Root::Part { role: role?, module: module?, exports: exports?.unwrap_or_default() })
+        let exports = exports?.unwrap_or_default();
+        Some(Root::Part { role: role?, module: module?, modules: modules?, exports })
     }
 
     fn knob(&mut self, tree: &Tree) -> Option<Knob> {

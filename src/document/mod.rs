@@ -88,6 +88,8 @@ pub enum Root {
         role: Spanned<String>,
         /// The WGSL module, below `kernels/`, that stands behind `role/NAME` in imports.
         module: Option<Spanned<String>>,
+        /// Further modules: `NAME` → the one behind `role/NAME`, for names that are no roles of their own.
+        modules: Entries<String>,
         /// Resources, values and knobs of this part that the pipeline and other parts can name.
         exports: Vec<Spanned<String>>,
     },

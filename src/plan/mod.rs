@@ -63,7 +63,7 @@ pub struct Plan {
     pub outputs: Vec<(String, Reference, Place)>,
     /// Role → the part that plays it.
     pub parts: BTreeMap<String, String>,
-    /// Role → its WGSL module and the scope in which that module's bindings are looked up.
+    /// Role, or another name that a part gives → the WGSL module and the scope in which its bindings are looked up.
     pub modules: BTreeMap<String, Module>,
     /// What the scene calls for and the pipeline or a part of it can't do; without a scene, what that could be.
     pub lacks: Vec<PlannedLack>,
@@ -297,7 +297,7 @@ impl Plan {
         visible(&self.scopes, scope).into_keys().collect()
     }
 
-    /// Where the bindings of the module in `role` are looked up for this stage.
+    /// Where the bindings of the module behind `role/ROLE` are looked up for this stage.
     pub fn module_scope(&self, stage: &PlannedStage, role: &str) -> Option<ScopeId> {
         stage.modules.get(role).copied().or_else(|| self.modules.get(role).map(|module| module.scope))
     }
@@ -361,18 +361,14 @@ pub fn expand(document: &Document, library: &Library, setup: &Setup) -> Result<P
     let lacks = lacks.flat_map(|(document, scope)| walk.lacks(document, scope)).collect();
     let Walk { stages, history, .. } = walk;
     let resources = world.planned_resources(&history);
+    let modules = parts::modules(&scoped, &mut world);
     let warnings = Problems::check(world.take_problems())?;
-    let modules = scoped.iter().filter_map(|(player, scope)| {
-        let Root::Part { module: Some(module), .. } = &player.document.root else { return None };
-        let module = Module { kernel: module.value.clone(), scope: *scope, place: module.place.clone() };
-        Some((player.role.clone(), module))
-    });
     let stem = Path::new(document.source.name()).file_stem().and_then(|stem| stem.to_str());
     Ok(Plan {
         name: stem.unwrap_or(document.source.name()).to_owned(),
         about: document.about.value.clone(),
         parts: players.iter().map(|p| (p.role.clone(), p.part.clone())).collect(),
-        modules: modules.collect(),
+        modules,
         features: world.features,
         knobs: world.knobs,
         values,

@@ -2,14 +2,34 @@
 
 use super::setup::Setup;
 use super::world::{LazyResource, Live, World};
-use super::{Named, Reference, ResourceId, ScopeId};
+use super::{Module, Named, Reference, ResourceId, ScopeId};
 use crate::document::{self, Document, Resource, Root, Spanned};
 use crate::library::{Library, Shelf};
 use crate::problem::{Place, Problem, Problems, Result, Source};
 use std::cell::OnceCell;
+use std::collections::BTreeMap;
 
 /// What every scene gives, by the names that kernels call it.
 pub const SCENE_RESOURCES: [&str; 12] = crate::scene::buffers::NAMES;
+
+/// The modules of all parts, by the names behind `role/`. Two of one name are reported.
+pub(super) fn modules(players: &[(&Player, ScopeId)], world: &mut World<'_>) -> BTreeMap<String, Module> {
+    let mut modules: BTreeMap<String, Module> = BTreeMap::new();
+    for (player, scope) in players {
+        for (name, module) in player.modules() {
+            let found = Module { kernel: module.value.clone(), scope: *scope, place: module.place.clone() };
+            if let Some(first) = modules.get(name) {
+                let problem = Problem::input("duplicate-module", format!("two modules stand behind `role/{name}`"))
+                    .at(&module.place, "another here")
+                    .at(&first.place, "one here");
+                world.report(problem.help("give one of the parts another name for its module"));
+                continue;
+            }
+            modules.insert(name.to_owned(), found);
+        }
+    }
+    modules
+}
 
 /// The part that plays a role.
 pub(super) struct Player {
@@ -25,6 +45,16 @@ impl Player {
             Root::Part { exports, .. } => exports,
             Root::Pipeline { .. } => &[],
         }
+    }
+
+    /// `role/NAME` and the module behind it.
+    pub fn modules(&self) -> impl Iterator<Item = (&str, &Spanned<String>)> {
+        let (own, further) = match &self.document.root {
+            Root::Part { module, modules, .. } => (module.as_ref(), modules.as_slice()),
+            Root::Pipeline { .. } => (None, &[][..]),
+        };
+        let further = further.iter().map(|(name, module)| (name.value.as_str(), module));
+        own.map(|module| (self.role.as_str(), module)).into_iter().chain(further)
     }
 
     pub fn exports_named(&self, name: &str) -> bool {

@@ -314,13 +314,13 @@ impl<'w, 'a> Walk<'w, 'a> {
         })
     }
 
-    /// Role → the scope of its module, where swaps have changed it.
+    /// `role/NAME` → the scope of its module, where swaps have changed it.
     fn modules_now(&mut self) -> BTreeMap<String, ScopeId> {
         let mut changed = BTreeMap::new();
         for (player, scope) in self.players {
             let now = self.overlay(*scope);
             if now != *scope {
-                changed.insert(player.role.clone(), now);
+                changed.extend(player.modules().map(|(name, _)| (name.to_owned(), now)));
             }
         }
         changed

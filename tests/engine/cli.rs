@@ -153,7 +153,7 @@ fn exit_codes_tell_bad_input_from_failure() {
     let file = folder.path().join("color.png").display().to_string();
     assert_eq!(render(&["--output", &format!("color={file}")]), Some(0));
     assert!(Path::new(&file).is_file());
-    assert_eq!(render(&["--set", "resolution=17"]), Some(2));
+    assert_eq!(render(&["--set", "resolution=1025"]), Some(2));
     assert_eq!(render(&["--output", "colour=x.png"]), Some(2));
     assert_eq!(render(&["--no-such-option"]), Some(2));
     assert_eq!(code(&["render", &scene, "-p", "no-such-pipeline"]), Some(2));

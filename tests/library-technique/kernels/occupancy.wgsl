@@ -1,18 +1,16 @@
-// For tests: the number of fragments in each voxel, word 0 of its sums. Voxel (x, y, z) is pixel
-// (x, y + z · resolution).
-// Reads 4 B, writes a texel.
+// For tests: the number of fragments in each voxel, as the payload counts them. Voxel (x, y, z) is pixel
+// (x, y + z · the grid's size along y).
+// Reads a voxel, writes a texel.
 
-import lib/sum_words;
+import lib/grid;
+import role/voxels;
 
-var<storage, read> sums: array<u32>;
 var occupancy: texture_storage_2d<r32float, write>;
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    let size = textureDimensions(occupancy);
-    if any(id.xy >= size) {
-        return;
+    if all(id.xy < textureDimensions(occupancy)) {
+        let voxel = vec3u(id.x, id.y % values.grid_size.y, id.y / values.grid_size.y);
+        textureStore(occupancy, id.xy, vec4f(f32(fragment_count(voxel)), 0.0, 0.0, 1.0));
     }
-    let voxel = id.y * size.x + id.x;
-    textureStore(occupancy, id.xy, vec4f(f32(sums[voxel * SUM_WORDS]), 0.0, 0.0, 1.0));
 }
