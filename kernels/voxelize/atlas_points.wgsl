@@ -17,15 +17,6 @@ const PLACE_DOUBT: f32 = 1.9073486e-6;
 
 var texels: texture_2d<u32>;
 
-struct Counters {
-    /// Points that a payload took.
-    points: atomic<u32>,
-}
-
-var<storage, read_write> counters: Counters;
-
-var<workgroup> group_points: atomic<u32>;
-
 /// Weights of a triangle's corners in the point of it that is at `place`, or next to it.
 fn atlas_weights(triangle: u32, place: vec2f) -> vec3f {
     let a = atlas_corner(triangle, 0u);
@@ -49,21 +40,20 @@ fn triangle_meets(corners: array<vec3i, 3>, voxel: vec3i) -> bool {
     if any(low > vec3i(0)) || any(high < vec3i(0)) {
         return false;
     }
-    let normal = normal_of(p);
-    if all(normal[0] == vec2u(0u)) && all(normal[1] == vec2u(0u)) && all(normal[2] == vec2u(0u)) {
-        return line_meets(line_of(p), vec3i(0));
-    }
-    let axis = dominant_axis(normal);
+    let facing = turned(facing_of(p));
     for (var i = 0u; i < 3u; i++) {
-        p[i] = turn(p[i], axis);
+        p[i] = turn(p[i], facing.axis);
     }
-    let overlap = overlap_of(p, false, vec3i(0));
+    let overlap = overlap_of(p, facing, false, vec3i(0));
+    if !inside(overlap, overlap.xy, 0u, 1u, 2u, vec2i(0)) {
+        return false;
+    }
     let range = column_range(overlap, vec2i(0));
-    return inside(overlap, overlap.xy, 0u, 1u, 2u, vec2i(0)) && fills(overlap, range, vec3i(0));
+    return range.x <= 0 && range.y >= 0 && fills(overlap, range, vec3i(0));
 }
 
-/// Adds the point of `triangle` at a place of the atlas; returns whether the payload took it.
-fn add_point(triangle: u32, place: vec2f) -> bool {
+/// Adds the point of `triangle` at a place of the atlas, if it lies in the grid.
+fn add_point(triangle: u32, place: vec2f) {
     let t = triangles[triangle];
     let corners = array(
         snapped(to_grid(corner_position(t.a, t.instance))),
@@ -82,28 +72,24 @@ fn add_point(triangle: u32, place: vec2f) -> bool {
     let point = weights.x * near[0] + weights.y * near[1] + weights.z * near[2];
     let voxel = first + vec3i(floor(point));
     if any(voxel < vec3i(0)) || any(voxel >= vec3i(values.grid_size)) {
-        return false;
+        return;
     }
     let largest = max(abs(near[0]), max(abs(near[1]), abs(near[2])));
     let doubt = PLACE_DOUBT * (1.0 + max(largest.x, max(largest.y, largest.z)));
     let doubtful = any(abs(fract(point) - 0.5) > vec3f(0.5 - doubt));
-    if doubtful && !triangle_meets(corners, voxel) {
-        return false;
+    if !doubtful || triangle_meets(corners, voxel) {
+        add_fragment(surface_of(triangle, placed), vec3u(voxel));
     }
-    return add_fragment(surface_of(triangle, placed), vec3u(voxel));
 }
 
 @compute @workgroup_size(8, 8)
-fn main(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
+fn main(@builtin(global_invocation_id) id: vec3u) {
     let size = textureDimensions(texels);
-    if all(id.xy < size) {
-        let number = textureLoad(texels, id.xy, 0).x;
-        if number > 0u && add_point(number - 1u, (vec2f(id.xy) + 0.5) / vec2f(size)) {
-            atomicAdd(&group_points, 1u);
-        }
+    if any(id.xy >= size) {
+        return;
     }
-    workgroupBarrier();
-    if local == 0u && atomicLoad(&group_points) > 0u {
-        atomicAdd(&counters.points, atomicLoad(&group_points));
+    let number = textureLoad(texels, id.xy, 0).x;
+    if number > 0u {
+        add_point(number - 1u, (vec2f(id.xy) + 0.5) / vec2f(size));
     }
 }

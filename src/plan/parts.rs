@@ -19,9 +19,10 @@ pub(super) fn modules(players: &[(&Player, ScopeId)], world: &mut World<'_>) -> 
         for (name, module) in player.modules() {
             let found = Module { kernel: module.value.clone(), scope: *scope, place: module.place.clone() };
             if let Some(first) = modules.get(name) {
-                let problem = Problem::input("duplicate-module", format!("two modules stand behind `role/{name}`"))
-                    .at(&module.place, "another here")
-                    .at(&first.place, "one here");
+                let problem =
+                    Problem::input("duplicate-module", format!("two modules stand behind `role/{name}`"))
+                        .at(&module.place, "another here")
+                        .at(&first.place, "one here");
                 world.report(problem.help("give one of the parts another name for its module"));
                 continue;
             }
