@@ -15,7 +15,8 @@ import role/payload;
 /// Bounds what single floats lose in a point's place, in parts of the largest coordinate: 16 roundings.
 const PLACE_DOUBT: f32 = 1.9073486e-6;
 
-var texels: texture_2d<u32>;
+/// Numbers of triangles and 1; 0 where there is none.
+var triangle_map: texture_2d<u32>;
 
 /// Weights of a triangle's corners in the point of it that is at `place`, or next to it.
 fn atlas_weights(triangle: u32, place: vec2f) -> vec3f {
@@ -84,11 +85,11 @@ fn add_point(triangle: u32, place: vec2f) {
 
 @compute @workgroup_size(8, 8)
 fn main(@builtin(global_invocation_id) id: vec3u) {
-    let size = textureDimensions(texels);
+    let size = textureDimensions(triangle_map);
     if any(id.xy >= size) {
         return;
     }
-    let number = textureLoad(texels, id.xy, 0).x;
+    let number = textureLoad(triangle_map, id.xy, 0).x;
     if number > 0u {
         add_point(number - 1u, (vec2f(id.xy) + 0.5) / vec2f(size));
     }

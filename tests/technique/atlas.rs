@@ -30,11 +30,15 @@ fn beyond(a: &[u32], b: &[u32]) -> usize {
 fn points_lie_in_voxels_that_triangles_touch() {
     let studio = Studio::new();
     let sets = [
-        ("anywhere", [random(2000, 2, 1), random(600, 8, 1), random(80, 29, 1)].concat()),
-        ("on a lattice", [random(2000, 2, 1024), random(500, 8, 2048), random(60, 29, 4096)].concat()),
-        ("hard", [hard(random(800, 2, 512)), hard(random(300, 8, 1)), hard(random(60, 29, 2048))].concat()),
+        ("anywhere", [random(2000, 2, 1), random(600, 8, 1), random(80, 29, 1)].concat(), 80),
+        ("on a lattice", [random(2000, 2, 1024), random(500, 8, 2048), random(60, 29, 4096)].concat(), 80),
+        (
+            "hard",
+            [hard(random(800, 2, 512)), hard(random(300, 8, 1)), hard(random(60, 29, 2048))].concat(),
+            40,
+        ),
     ];
-    for (kind, triangles) in sets {
+    for (kind, triangles, least) in sets {
         let path = scene(&studio, &triangles);
         let triangles = snapped(&triangles);
         let touched = count(&triangles, 32, Rule::Conservative, Ties::Count);
@@ -48,7 +52,7 @@ fn points_lie_in_voxels_that_triangles_touch() {
             beyond(&found, &thin)
         );
         assert_eq!(beyond(&found, &touched), 0, "{kind}");
-        assert!(filled(&found) * 10 > filled(&touched) * 7, "{kind}: most are found");
+        assert!(filled(&found) * 100 > filled(&touched) * least, "{kind}: most that has an area is found");
         assert!(beyond(&found, &thin) > 100, "a control: not all of them are of the thin set");
     }
 }
@@ -89,9 +93,9 @@ fn what_moves_is_found_where_it_is() {
         let [picture] = render(&path, "occupancy", &options, ["occupancy"]);
         picture.texels().map(|texel| texel[0] as u32).collect::<Vec<_>>()
     };
-    // Half a second, asked for at once and come to by playing.
+    // Half a second, asked for at once and come to by playing: the first frame is not counted.
     let later = at("--time 0.5");
-    let found = ["--time 0.5", "--play 4 --frames 3"].map(|more| through_atlas(&path, 64, 2.0, more));
+    let found = ["--time 0.5", "--play 4 --frames 2"].map(|more| through_atlas(&path, 64, 2.0, more));
     for found in &found {
         assert_eq!(beyond(found, &later), 0);
         assert!(beyond(found, &at("")) > 100, "a control: it has moved");
@@ -120,7 +124,7 @@ fn only_who_asks_has_surfaces_unwrapped() {
     request.sets.push(("resolution".to_owned(), "256".to_owned()));
     let prepared = prepare(&request, &library, Some(&scene)).expect("no device is asked");
     let problem = voxgi::graph::check::limits(&prepared.graph, &wgpu_types::Limits::default(), "WebGPU");
-    assert!(format!("{problem:?}").contains("still_texels"), "{problem:?}");
+    assert!(format!("{problem:?}").contains("still_map"), "{problem:?}");
     // Without a scene it stays open.
     prepare(&request, &library, None).expect("it is right");
 }
