@@ -252,7 +252,7 @@ impl Prepared {
         sources.map(|source| (source.name(), source.text())).collect()
     }
 
-    /// Whether some file has the name of a feature that takes long; in a kernel it may be a field of the uniform `scene`.
+    /// Whether some file has the name of a feature that takes long; in a kernel that may be a field of `scene`.
     fn names_slow(&self) -> bool {
         let documents = self.documents();
         let names = features::SLOW.iter().map(|feature| feature.name.trim_start_matches("scene."));

@@ -4,8 +4,8 @@
 
 import lib/scene;
 
-/// Pairs of words. Two of each instance: where its rectangle begins (2 f32); its scale (f32) and what leads to the first
-/// of its corners. Then the corners of the meshes' triangles (2 f32), in their rectangles.
+/// Pairs of words. Two of each instance: where its rectangle begins (2 f32); its scale (f32) and what leads to the
+/// first of its corners. Then the corners of the meshes' triangles (2 f32), in their rectangles.
 var<storage, read> atlas: array<vec2u>;
 
 /// Where a corner (0, 1, 2) of a triangle lies in the square. A triangle without area is a point there.

@@ -1,5 +1,5 @@
-//! Unwrapped meshes, kept by content: a file for each, named by a hash of all that it depends on. It holds a hash of the
-//! rest, and the corners; what is not whole, or not of this mesh, is made again.
+//! Unwrapped meshes, kept by content: a file for each, named by a hash of all that it depends on. It holds a hash of
+//! the rest, and the corners; what is not whole, or not of this mesh, is made again.
 
 use super::mesh::Mesh;
 use super::unwrap::{UNWRAPPER, Unwrapped, options, unwrap};

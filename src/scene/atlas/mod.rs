@@ -2,8 +2,8 @@
 //! kernels can draw what belongs to surfaces into a texture, or look it up there.
 //!
 //! Each mesh is unwrapped once, in its own space ([`unwrap`]); instances share what their mesh has, and each has a
-//! rectangle of its own ([`shelves`]) that is as much larger as its transform stretches most. So a length on a surface is
-//! about as long in the square, and no rigid motion changes anything. Unwrapped meshes are kept by content ([`kept`]).
+//! rectangle of its own ([`shelves`]) that is as much larger as its transform stretches most. So a length on a surface
+//! is about as long in the square, and no rigid motion changes anything. Unwrapped meshes are kept by content ([`kept`]).
 //!
 //! What has no area has no place: its corners coincide there, and [`Atlas::lost`] counts it.
 //!
@@ -19,7 +19,7 @@
 //! | 0–2 | its corners in the mesh's rectangle |
 //!
 //! Corner `c` of triangle `t` of the scene, of instance `i`, is pair `first[i] + 3 · t + c` (modulo 2³²), and in the
-//! square `offset[i] + scale[i] · corner`. As the side of the square is [`Atlas::extent`] metres, a texture of n² texels
+//! square `offset[i] + scale[i] · corner`. The side of the square is [`Atlas::extent`] metres: a texture of n² texels
 //! has `n / extent` of them to a metre.
 
 mod kept;

@@ -1,7 +1,7 @@
 //! Rectangles on shelves: packed without overlap into a square that is not much larger than they are.
 //!
-//! The highest come first, each to the lowest shelf that has room for it. Of some widths of the shelves the one with the
-//! smallest square is taken.
+//! The highest come first, each to the lowest shelf that has room for it. Of some widths of the shelves the one with
+//! the smallest square is taken.
 
 use glam::DVec2;
 

@@ -304,7 +304,8 @@ proptest! {
         for unwrapped in [unwrap(&mesh, |_| ()), one_by_one(&mesh)] {
             let Unwrapped { corners, size } = &unwrapped;
             prop_assert_eq!(corners.len(), triangles.len());
-            prop_assert!(corners.iter().flatten().all(|p| p.is_finite() && p.cmpge(Vec2::ZERO).all() && p.cmple(*size).all()));
+            let within = |p: &Vec2| p.is_finite() && p.cmpge(Vec2::ZERO).all() && p.cmple(*size).all();
+            prop_assert!(corners.iter().flatten().all(within));
             for (corners, triangle) in corners.iter().zip(&mesh.triangles) {
                 let placed = area(&corners.map(|p| p.as_dvec2()));
                 let space = area_in_space(mesh.corners(*triangle));
