@@ -3,7 +3,7 @@
 //!
 //! Each mesh is unwrapped once, in its own space ([`unwrap`]); instances share what their mesh has, and each has a
 //! rectangle of its own ([`shelves`]) that is as much larger as its transform stretches most. So a length on a surface
-//! is about as long in the square, and no rigid motion changes anything. Unwrapped meshes are kept by content ([`kept`]).
+//! is about as long in the square, and no rigid motion changes anything. Meshes are kept by content ([`kept`]).
 //!
 //! What has no area has no place: its corners coincide there, and [`Atlas::lost`] counts it.
 //!
