@@ -94,6 +94,9 @@ pub struct Run {
     pub knobs: BTreeMap<String, serde_json::Value>,
     /// The knobs and parts that were asked for, as written; a sweep's coordinates.
     pub set: BTreeMap<String, String>,
+    /// Of those, the knobs whose values tuning found.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty", default)]
+    pub tuned: crate::tuned::Uses,
     pub clock: String,
     pub clock_reason: Option<String>,
     /// Of whole frames, on the GPU.

@@ -53,25 +53,26 @@ pub fn adapters() -> Vec<Adapter> {
     adapters
 }
 
+/// The best adapter, or the best whose name contains `wanted` (case does not matter).
+pub fn choose(wanted: Option<&str>) -> Result<Adapter> {
+    let adapters = adapters();
+    let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
+    let found = adapters.into_iter().find(|adapter| {
+        wanted.is_none_or(|w| adapter.get_info().name.to_lowercase().contains(&w.to_lowercase()))
+    });
+    Ok(found.ok_or_else(|| match wanted {
+        Some(wanted) if !names.is_empty() => {
+            Problem::failure("no-adapter", format!("no adapter's name contains `{wanted}`"))
+                .help(format!("there are: {}", names.join(", ")))
+        }
+        _ => no_adapter(),
+    })?)
+}
+
 impl Gpu {
-    /// Opens the best adapter, or the best whose name contains `wanted` (case does not matter).
+    /// Opens the adapter that [`choose`] chooses.
     pub fn open(wanted: Option<&str>, limits: &LimitSet) -> Result<Self> {
-        let adapters = adapters();
-        let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
-        let found = adapters.into_iter().find(|adapter| {
-            wanted.is_none_or(|w| adapter.get_info().name.to_lowercase().contains(&w.to_lowercase()))
-        });
-        let Some(adapter) = found else {
-            let problem = match wanted {
-                Some(wanted) if !names.is_empty() => {
-                    Problem::failure("no-adapter", format!("no adapter's name contains `{wanted}`"))
-                        .help(format!("there are: {}", names.join(", ")))
-                }
-                _ => no_adapter(),
-            };
-            return Err(problem.into());
-        };
-        Self::from_adapter(adapter, limits)
+        Self::from_adapter(choose(wanted)?, limits)
     }
 
     fn from_adapter(adapter: Adapter, limits: &LimitSet) -> Result<Self> {

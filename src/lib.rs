@@ -28,4 +28,6 @@ pub mod report;
 pub mod scene;
 pub mod schedule;
 pub mod session;
+pub mod tune;
+pub mod tuned;
 mod zone;

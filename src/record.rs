@@ -22,6 +22,9 @@ pub struct Record {
     pub width: u32,
     pub height: u32,
     pub knobs: BTreeMap<String, serde_json::Value>,
+    /// Of those, the ones whose values tuning found.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub tuned: crate::tuned::Uses,
     pub parts: BTreeMap<String, String>,
     pub adapter: Adapter,
     pub clock: &'static str,

@@ -5,6 +5,7 @@
 //! pixel, and `estimate.json`
 //! says which is whole. The latter is written last, so that a run that was stopped leaves what there was before.
 
+use crate::cache;
 use crate::converge::{Estimate, Step, Until, VARIANCE, converge};
 use crate::device::Gpu;
 use crate::frame::Clock;
@@ -51,13 +52,9 @@ impl Cache {
         Self { folder }
     }
 
-    /// The folder that `VOXGI_CACHE` names, or else `voxgi` in the user's cache folder.
+    /// The one in the user's cache.
     pub fn of_user() -> Result<Self> {
-        let folder = crate::cache::folder("references").ok_or_else(|| {
-            Problem::input("no-cache", "there is no folder to keep references in")
-                .help("set VOXGI_CACHE to a folder")
-        })?;
-        Ok(Self::at(folder))
+        Ok(Self::at(cache::folder_of_user()?.join("references")))
     }
 
     /// The reference of a scene by the pipeline that `request` names, good enough for `until`: from the cache, as

@@ -8,11 +8,8 @@ import lib/overlap;
 import lib/scene;
 import role/payload;
 
-struct ColumnKnobs {
-    separability: u32,
-}
-
-var<uniform> knobs: ColumnKnobs;
+/// Of the knob `separability`: the thin one; the other is conservative.
+const THIN: u32 = 6u;
 
 /// A triangle in the grid.
 struct Placed {
@@ -58,16 +55,19 @@ fn grid_voxel(placed: Placed, voxel: vec3i) -> vec3u {
     return vec3u(turn_back(placed.first + voxel, placed.facing.axis));
 }
 
-fn prepared(placed: Placed) -> Overlap {
-    return overlap_of(placed.corners, placed.facing, knobs.separability == 6u, placed.size);
+fn prepared(placed: Placed, separability: u32) -> Overlap {
+    return overlap_of(placed.corners, placed.facing, separability == THIN, placed.size);
 }
 
 /// What the payload knows of it.
 fn placed_surface(placed: Placed) -> Surface {
-    var corners: array<vec3f, 3>;
-    for (var i = 0u; i < 3u; i++) {
-        corners[i] = vec3f(turn_back(placed.corners[i] + placed.first * UNITS, placed.facing.axis)) / f32(UNITS);
-    }
+    let axis = placed.facing.axis;
+    let begin = placed.first * UNITS;
+    let corners = array(
+        vec3f(turn_back(placed.corners[0] + begin, axis)) / f32(UNITS),
+        vec3f(turn_back(placed.corners[1] + begin, axis)) / f32(UNITS),
+        vec3f(turn_back(placed.corners[2] + begin, axis)) / f32(UNITS),
+    );
     return surface_of(placed.triangle, corners);
 }
 
@@ -82,22 +82,17 @@ struct Scan {
     range: vec4i,
 }
 
-/// Before the first of `rows` rows; there must be one.
-fn scan_begin(first_row: i32) -> Scan {
-    return Scan(vec2i(0, first_row - 1), 0, 0, -1, vec4i(0));
-}
-
-/// Goes to the next column, in rows up to `last_row`; false when there is none. The column may have no voxel.
-fn scan_on(scan: ptr<function, Scan>, overlap: Overlap, placed: Placed, last_row: i32) -> bool {
+/// Goes to the next column of those from `low_x` to `high`; false when there is none. The column may have no voxel.
+fn scan_on(scan: ptr<function, Scan>, overlap: Overlap, placed: Placed, low_x: i32, high: vec2i) -> bool {
     (*scan).p.x += 1;
     if (*scan).p.x > (*scan).last_x {
         (*scan).p.y += 1;
-        if (*scan).p.y > last_row {
+        if (*scan).p.y > high.y {
             return false;
         }
         let row = row_range(overlap, (*scan).p.y);
-        (*scan).p.x = max(row.x, 0);
-        (*scan).last_x = min(row.y, placed.size.x);
+        (*scan).p.x = max(row.x, low_x);
+        (*scan).last_x = min(row.y, high.x);
     }
     if (*scan).p.x <= (*scan).last_x && inside(overlap, overlap.xy, 0u, 1u, 2u, (*scan).p) {
         (*scan).range = column_range(overlap, (*scan).p);
@@ -118,18 +113,23 @@ fn scan_fill(scan: ptr<function, Scan>, overlap: Overlap, placed: Placed, surfac
     }
 }
 
-/// Rows from `first_row` to `last_row`, by the calling thread.
-fn fill_rows(placed: Placed, first_row: i32, last_row: i32) {
+/// All columns of a triangle, by the calling thread.
+fn fill_all(placed: Placed, separability: u32) {
+    fill_columns(placed, separability, vec2i(0), placed.size.xy);
+}
+
+/// The columns from `low` to `high`, by the calling thread.
+fn fill_columns(placed: Placed, separability: u32, low: vec2i, high: vec2i) {
     let surface = placed_surface(placed);
-    let overlap = prepared(placed);
+    let overlap = prepared(placed, separability);
     // One loop through rows, columns and voxels: threads whose triangles have other sizes wait less for each other than
     // in a loop for each axis.
-    var scan = scan_begin(first_row);
-    let columns = (placed.size.x + 1) * (last_row - first_row + 1);
-    let most = columns * (placed.size.z + 1) + placed.size.y + 2;
+    var scan = Scan(vec2i(0, low.y - 1), 0, 0, -1, vec4i(0));
+    let sides = high - low + 1;
+    let most = sides.x * sides.y * (placed.size.z + 1) + sides.y + 1;
     for (var k = 0; k < most; k++) {
         scan_fill(&scan, overlap, placed, surface);
-        if scan.z > scan.last_z && !scan_on(&scan, overlap, placed, last_row) {
+        if scan.z > scan.last_z && !scan_on(&scan, overlap, placed, low.x, high) {
             break;
         }
     }

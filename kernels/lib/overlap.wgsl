@@ -184,14 +184,13 @@ fn inside(o: Overlap, planes: HalfPlanes, u: u32, v: u32, facing: u32, p: vec2i)
     if all(value > planes.doubt) {
         return true;
     }
-    for (var i = 0u; i < 3u; i++) {
-        let begin = o.corners[i];
-        let end = o.corners[(i + 1u) % 3u];
-        if !exactly_inside(vec2i(begin[u], begin[v]), vec2i(end[u], end[v]), o.signs[facing], o.thin, p) {
-            return false;
-        }
-    }
-    return true;
+    return edge_holds(o, u, v, facing, o.corners[0], o.corners[1], p)
+        && edge_holds(o, u, v, facing, o.corners[1], o.corners[2], p)
+        && edge_holds(o, u, v, facing, o.corners[2], o.corners[0], p);
+}
+
+fn edge_holds(o: Overlap, u: u32, v: u32, facing: u32, begin: vec3i, end: vec3i, p: vec2i) -> bool {
+    return exactly_inside(vec2i(begin[u], begin[v]), vec2i(end[u], end[v]), o.signs[facing], o.thin, p);
 }
 
 /// Prepares a triangle whose corners are turned and relative, and whose `facing` is turned; voxels from 0 to `size` will be asked

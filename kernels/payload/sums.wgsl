@@ -6,9 +6,9 @@
 // Reads per triangle 3 corners (ca. 400 B); per fragment 8 texels (×2 where it emits) for textured materials; writes per
 // fragment 10 atomic words (13).
 
+import lib/fill;
 import lib/fixed;
 import lib/grid;
-import lib/listing;
 import lib/material;
 import lib/nearest;
 import lib/scene;
@@ -86,7 +86,7 @@ fn add_fragment(surface: Surface, voxel: vec3u) {
         return;
     }
     if before == 0u {
-        list_voxel(number);
+        mark_filled(number);
     }
     for (var i = 0u; i < 3u; i++) {
         add_word(at + SUM_ALBEDO + i, fixed_unsigned(base[i]));

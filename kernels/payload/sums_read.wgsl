@@ -5,6 +5,7 @@
 
 import lib/fixed;
 import lib/grid;
+import lib/is_filled;
 import lib/sum_words;
 
 var<storage, read> sums: array<u32>;
@@ -38,11 +39,6 @@ struct Surfel {
     normal: vec3f,
     /// World space, metres; on the surface where that is flat.
     position: vec3f,
-}
-
-/// Whether any fragment lies in the voxel; none does outside the grid.
-fn is_filled(voxel: vec3u) -> bool {
-    return fragment_count(voxel) > 0u;
 }
 
 /// Fragments in the voxel; more than MOST_TERMS of still triangles, or of moving ones, count as that many.

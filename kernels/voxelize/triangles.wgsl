@@ -6,6 +6,12 @@
 import lib/columns;
 import lib/dispatch;
 
+struct Knobs {
+    separability: u32,
+}
+
+var<uniform> knobs: Knobs;
+
 struct Geometry {
     first: u32,
     triangles: u32,
@@ -19,7 +25,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workg
     if triangle < geometry.triangles {
         let placed = placed_of(geometry.first + triangle);
         if placed.meets {
-            fill_rows(placed, 0, placed.size.y);
+            fill_all(placed, knobs.separability);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! `voxgi compare`: pipelines side by side, each held against the scene's reference.
 
 use super::run::{UntilArgs, show, steps};
+use super::tuned::Kept;
 use super::{print, print_json, size};
 use crate::compare::{Comparing, Doing, Plan, Subject};
 use crate::comparison::{Comparison, Run};
@@ -41,6 +42,25 @@ pub struct CompareArgs {
 /// What `compare` and `sweep` have in common.
 #[derive(Args)]
 pub struct CommonArgs {
+    #[command(flatten)]
+    how: HowArgs,
+    /// Use values that `voxgi tune` kept for the adapter and a pipeline, for knobs that are not set.
+    #[arg(long)]
+    tuned: bool,
+    /// Frames that are timed, after a first one.
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
+    frames: u32,
+    /// The folder to write into; one that holds a part of this comparison is gone on with. Default: a new one in `runs/`.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Print the comparison as one JSON object.
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// On what, against what, and of which size pipelines are run that are held against a reference.
+#[derive(Args)]
+pub struct HowArgs {
     /// Size of the pictures in pixels.
     #[arg(long, value_name = "WxH", default_value = "256x256", value_parser = size)]
     size: [u32; 2],
@@ -50,9 +70,6 @@ pub struct CommonArgs {
     /// The scenes as they are at this time of their motion.
     #[arg(long, value_name = "SECONDS", default_value_t = 0.0, value_parser = super::seconds)]
     time: f64,
-    /// Frames that are timed, after a first one.
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
-    frames: u32,
     /// The pipeline that makes references.
     #[arg(long, value_name = "NAME", default_value = "reference")]
     reference: String,
@@ -79,12 +96,6 @@ pub struct CommonArgs {
     /// Time stages by the wall clock, each submitted alone.
     #[arg(long)]
     wall_clock: bool,
-    /// The folder to write into; one that holds a part of this comparison is gone on with. Default: a new one in `runs/`.
-    #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
-    /// Print the comparison as one JSON object.
-    #[arg(long)]
-    pub json: bool,
 }
 
 /// A reference is made until its noise is below this, or for ten minutes.
@@ -99,18 +110,21 @@ impl CompareArgs {
 
 pub fn run(args: &CompareArgs) -> Result<()> {
     let library = args.common.library()?;
-    let mut subjects = Vec::new();
+    let mut subjects: Vec<Subject> = Vec::new();
     for text in &args.pipelines {
         let mut subject = subject(text, &library)?;
         subject.parts.splice(0..0, args.parts.iter().cloned());
         subject.sets.splice(0..0, args.sets.iter().cloned());
-        if let Some(twice) = subjects.iter().find(|other: &&Subject| **other == subject) {
-            let message = format!("`{}` is to be compared with itself", twice.name());
+        subjects.push(subject);
+    }
+    args.common.tune(&mut subjects, &library)?;
+    for (index, subject) in subjects.iter().enumerate() {
+        if subjects[..index].iter().any(|other| other.name() == subject.name()) {
+            let message = format!("`{}` is to be compared with itself", subject.name());
             return Err(Problem::input("compared-twice", message)
                 .help("leave one away, or set a knob")
                 .into());
         }
-        subjects.push(subject);
     }
     let plan = args.common.plan("compare", &args.scenes, subjects);
     make(&plan, &library, args.common.json)
@@ -179,7 +193,7 @@ fn watch(bar: &mut Option<(String, ProgressBar)>, doing: &Doing) {
 pub fn subject(text: &str, library: &Library) -> Result<Subject> {
     let mut pieces = text.split(',');
     let pipeline = pieces.next().unwrap_or_default().to_owned();
-    let mut subject = Subject { pipeline, parts: Vec::new(), sets: Vec::new(), effects: Vec::new() };
+    let mut subject = Subject { pipeline, ..Subject::default() };
     for piece in pieces {
         let (key, value) = super::pair(piece).map_err(|why| {
             Problem::input("pipeline-option", format!("in `{text}`: {why}"))
@@ -215,20 +229,46 @@ impl Subject {
 
 impl CommonArgs {
     pub fn library(&self) -> Result<Library> {
-        Library::new(self.libraries.clone())
+        self.how.library()
+    }
+
+    /// With `--tuned`, gives the subjects the values that are kept for them.
+    pub fn tune(&self, subjects: &mut [Subject], library: &Library) -> Result<()> {
+        match self.tuned {
+            true => Kept::on(self.how.adapter.as_deref())?.put_into(subjects, library),
+            false => Ok(()),
+        }
     }
 
     pub fn plan(&self, command: &'static str, scenes: &[PathBuf], subjects: Vec<Subject>) -> Plan {
+        let folder = self.out.clone().unwrap_or_else(|| folder(command, scenes));
+        self.how.plan(command, scenes, subjects, folder, self.frames)
+    }
+}
+
+impl HowArgs {
+    pub fn library(&self) -> Result<Library> {
+        Library::new(self.libraries.clone())
+    }
+
+    pub fn plan(
+        &self,
+        command: &'static str,
+        scenes: &[PathBuf],
+        subjects: Vec<Subject>,
+        folder: PathBuf,
+        frames: u32,
+    ) -> Plan {
         let otherwise = Until { samples: None, time: Some(DEFAULT_TIME), error: Some(DEFAULT_ERROR) };
         Plan {
             command,
-            folder: self.out.clone().unwrap_or_else(|| folder(command, scenes)),
+            folder,
             scenes: scenes.to_vec(),
             subjects,
             size: self.size,
             camera: self.camera,
             time: self.time,
-            frames: self.frames,
+            frames,
             repeats: 1,
             shuffle: None,
             reference: self.reference.clone(),

@@ -16,6 +16,8 @@ mod run;
 mod savings;
 mod scenes;
 mod sweep;
+mod tune;
+mod tuned;
 
 use crate::library::Library;
 use crate::play;
@@ -45,6 +47,8 @@ enum Command {
     Compare(Box<compare::CompareArgs>),
     /// Compare settings of one pipeline along its knobs and parts.
     Sweep(Box<sweep::SweepArgs>),
+    /// Find the value of a knob that makes a time or an error least, and keep it for `--tuned`.
+    Tune(Box<tune::TuneArgs>),
     /// Join parts of a comparison that were made apart.
     Merge(sweep::MergeArgs),
     /// Say what differs between two comparisons.
@@ -216,6 +220,7 @@ pub fn main() -> ExitCode {
         Command::Render(args) => args.json,
         Command::Compare(args) => args.json(),
         Command::Sweep(args) => args.json(),
+        Command::Tune(args) => args.json,
         Command::Diff(args) => args.json,
         Command::Profile(args) => args.json,
         Command::Check(args) => args.json,
@@ -228,6 +233,7 @@ pub fn main() -> ExitCode {
         Command::Render(args) => render::run(args),
         Command::Compare(args) => compare::run(args),
         Command::Sweep(args) => sweep::sweep(args),
+        Command::Tune(args) => tune::run(args),
         Command::Merge(args) => sweep::run_merge(args),
         Command::Diff(args) => sweep::run_diff(args),
         Command::Profile(args) => profile::run(args),

@@ -1,5 +1,6 @@
 //! What the commands that run a pipeline on a scene have in common: their options, and the way to a realised frame.
 
+use super::tuned::{Kept, told};
 use super::{PipelineArgs, tell};
 use crate::converge::{Step, Until};
 use crate::device::{Gpu, LimitSet};
@@ -9,6 +10,7 @@ use crate::problem::{Problem, Result};
 use crate::record::{self, Record, Samples};
 use crate::scene::{Camera, Scene};
 use crate::session::{Prepared, Request, prepare};
+use crate::tuned::{self, Uses};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::{BTreeMap, BTreeSet};
@@ -27,6 +29,9 @@ pub struct RunArgs {
     /// Use the adapter whose name contains this.
     #[arg(long, value_name = "NAME")]
     adapter: Option<String>,
+    /// Use values that `voxgi tune` kept for the adapter and the pipeline, for knobs that are not set.
+    #[arg(long)]
+    tuned: bool,
     /// Ask the device for no more than WebGPU guarantees.
     #[arg(long)]
     webgpu_limits: bool,
@@ -95,11 +100,16 @@ pub struct Ready {
     pub scene: Scene,
     pub request: Request,
     pub prepared: Prepared,
+    /// What tuning found of the request's knobs.
+    pub tuned: Uses,
 }
 
 /// A frame that can be run.
 pub struct Started {
     pub play: Play,
+    /// What it was made for.
+    pub request: Request,
+    tuned: Uses,
     /// Where the scene's motion begins, in seconds, and how many frames a second of it has, if it is played.
     motion: (f64, Option<f64>),
     pub gpu: Gpu,
@@ -116,14 +126,21 @@ impl RunArgs {
         let scene = self.pipeline_args.scene(&self.scene)?;
         let mut request = self.pipeline_args.request_for(&self.pipeline, &scene);
         adjust(&mut request);
-        let prepared = prepare(&request, &library, Some(&scene))?;
+        let mut prepared = prepare(&request, &library, Some(&scene))?;
+        let mut tuned = Uses::new();
+        if self.tuned {
+            tuned = Kept::on(self.adapter.as_deref())?.uses(&prepared.graph.plan)?;
+            eprint!("{}", told(&prepared.graph.plan, &tuned));
+            request.sets.extend(tuned::sets(&tuned));
+            prepared = prepare(&request, &library, Some(&scene))?;
+        }
         prepared.warnings.iter().for_each(tell);
-        Ok(Ready { scene, request, prepared })
+        Ok(Ready { scene, request, prepared, tuned })
     }
 
     /// Opens the device, chooses the clock and makes the frame.
     pub fn start(&self, ready: Ready, poison: Option<Poison>) -> Result<Started> {
-        let Ready { scene, request, prepared } = ready;
+        let Ready { scene, request, prepared, tuned } = ready;
         let limits = if self.webgpu_limits { LimitSet::Webgpu } else { LimitSet::Adapter };
         let gpu = Gpu::open(self.adapter.as_deref(), &limits)?;
         let clock = match self.wall_clock {
@@ -138,7 +155,7 @@ impl RunArgs {
         let frame = prepared.realise(&gpu, &scene, clock.clone(), poison)?;
         let play = Play::new(scene, request.camera, request.size, &frame);
         let motion = (self.pipeline_args.time, self.pipeline_args.play);
-        Ok(Started { play, motion, gpu, frame, clock, changes, warnings })
+        Ok(Started { play, request, tuned, motion, gpu, frame, clock, changes, warnings })
     }
 }
 
@@ -179,6 +196,7 @@ impl Started {
             width,
             height,
             knobs: plan.knobs.iter().map(|k| (k.path.clone(), record::value(&k.value))).collect(),
+            tuned: self.tuned.clone(),
             parts: plan.parts.clone(),
             adapter: record::adapter(&self.gpu),
             clock,

@@ -21,7 +21,7 @@ const PAIRS: usize = 7;
 pub fn stages(stages: &mut [StageRecord], args: &RunArgs, started: &Started) -> Result<()> {
     let (gpu, scene) = (&started.gpu, started.scene());
     let library = args.pipeline_args.library()?;
-    let request = Request { drop: false, keep: false, ..args.pipeline_args.request(&args.pipeline) };
+    let request = Request { drop: false, keep: false, ..started.request.clone() };
     let prepared = prepare(&request, &library, Some(scene))?;
     let mut frame = prepared.realise(gpu, scene, started.clock.clone(), None)?;
     let mut samples = Samples { first: Some(frame.run(gpu, &Changes::All)?.clone()), ..Samples::default() };
@@ -41,7 +41,7 @@ pub fn stages(stages: &mut [StageRecord], args: &RunArgs, started: &Started) -> 
 pub fn effects(args: &RunArgs, started: &Started) -> Result<Vec<EffectRecord>> {
     let (gpu, scene) = (&started.gpu, started.scene());
     let library = args.pipeline_args.library()?;
-    let request = Request { keep: false, ..args.pipeline_args.request(&args.pipeline) };
+    let request = Request { keep: false, ..started.request.clone() };
     let realised = |request: &Request| -> Result<Frame> {
         let mut frame =
             prepare(request, &library, Some(scene))?.realise(gpu, scene, started.clock.clone(), None)?;

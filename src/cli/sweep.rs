@@ -110,6 +110,7 @@ pub fn sweep(args: &SweepArgs) -> Result<()> {
     if let Some((number, of)) = args.shard {
         subjects = shard(subjects, number, of);
     }
+    args.common.tune(&mut subjects, &library)?;
     let mut plan = args.common.plan("sweep", &args.scenes, subjects);
     (plan.repeats, plan.shuffle) = (args.repeats, Some(args.seed));
     make(&plan, &library, args.common.json)?;

@@ -12,7 +12,7 @@ mod files;
 mod merge;
 mod subject;
 mod sweep;
-mod truth;
+pub(crate) mod truth;
 
 pub use diff::{Difference, diff};
 pub use merge::merge;

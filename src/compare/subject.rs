@@ -10,9 +10,10 @@ use crate::record::{self, Samples};
 use crate::scene::Scene;
 use crate::scene::features::{self, Feature};
 use crate::session::{Prepared, Request, prepare};
+use crate::tuned::{self, Uses};
 use std::collections::BTreeMap;
 
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Subject {
     pub pipeline: String,
     /// Role and part.
@@ -21,6 +22,8 @@ pub struct Subject {
     pub sets: Vec<(String, String)>,
     /// The flag of an effect that the scene calls for, such as `scene.emissive`, and whether it is simulated.
     pub effects: Vec<(String, bool)>,
+    /// Values that tuning found, of knobs that are not set.
+    pub tuned: Uses,
 }
 
 /// What a run gave.
@@ -51,7 +54,7 @@ impl Subject {
 
     fn settings(&self) -> impl Iterator<Item = (String, String)> {
         let effects = self.effects.iter().map(|(name, simulated)| (name.clone(), simulated.to_string()));
-        self.parts.iter().chain(&self.sets).cloned().chain(effects)
+        self.parts.iter().chain(&self.sets).cloned().chain(tuned::sets(&self.tuned)).chain(effects)
     }
 
     /// What conditions are told in place of the scene's own features.
@@ -73,10 +76,10 @@ impl Subject {
         Ok(claims)
     }
 
-    pub(super) fn prepare(&self, plan: &Plan, library: &Library, scene: &Scene) -> Result<Prepared> {
+    pub(crate) fn prepare(&self, plan: &Plan, library: &Library, scene: &Scene) -> Result<Prepared> {
         let request = Request {
             pipeline: self.pipeline.clone(),
-            sets: self.sets.clone(),
+            sets: self.sets.iter().cloned().chain(tuned::sets(&self.tuned)).collect(),
             parts: self.parts.clone(),
             size: plan.size,
             camera: plan.camera,
@@ -97,7 +100,7 @@ impl Subject {
     }
 
     /// Runs it on a device of its own: a first frame, then those that count.
-    pub(super) fn run(&self, plan: &Plan, scene: &Scene, prepared: Prepared) -> Result<Done> {
+    pub(crate) fn run(&self, plan: &Plan, scene: &Scene, prepared: Prepared) -> Result<Done> {
         let gpu = Gpu::open(plan.adapter.as_deref(), &plan.limits)?;
         let clock = match plan.wall_clock {
             true => Clock::Wall("asked for by --wall-clock".to_owned()),

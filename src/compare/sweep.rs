@@ -108,7 +108,7 @@ mod tests {
 
     fn base() -> Subject {
         let sets = vec![("c".to_owned(), "0".to_owned())];
-        Subject { pipeline: "p".to_owned(), parts: Vec::new(), sets, effects: Vec::new() }
+        Subject { pipeline: "p".to_owned(), sets, ..Subject::default() }
     }
 
     fn names(subjects: &[Subject]) -> Vec<String> {

@@ -71,9 +71,8 @@ pub fn make(
     light: &Light,
     watch: &mut dyn FnMut(Step) -> Result<()>,
 ) -> Result<(Truth, Reference)> {
-    let gpu = Gpu::open(plan.adapter.as_deref(), &plan.limits)?;
-    let made = cache.get(&gpu, scene, library, &request(plan, light.sets.clone()), &plan.until, watch)?;
-    let estimate = made.estimate;
+    let (truth, made) = get(plan, library, cache, scene, light, watch)?;
+    let estimate = &truth.estimate;
     let shown: BTreeMap<&str, &Picture> = estimate
         .pictures
         .iter()
@@ -82,16 +81,6 @@ pub fn make(
         .collect();
     let into = format!("{}/{}", files::slug(&scene.name), files::slug(&light.name));
     let pictures = files::write(plan, &into, &shown, &BTreeMap::new())?;
-    let masks = match (estimate.pictures.get("depth"), estimate.pictures.get("direct")) {
-        (Some(depth), Some(direct)) => Some(Masks::new(
-            &Input { name: "the reference's depth", picture: depth },
-            &Input { name: "the reference's direct", picture: direct },
-        )?),
-        _ => None,
-    };
-    let names: Vec<String> = estimate.means().map(|(name, _, _)| name.to_owned()).collect();
-    let noise: BTreeMap<String, f64> =
-        names.into_iter().filter_map(|name| estimate.noise(&name).map(|noise| (name, noise))).collect();
     let mean = |picture: &Picture| {
         let colors = picture.channels().min(3) as usize;
         let sum: f64 = picture.texels().flat_map(|texel| &texel[..colors]).map(|x| f64::from(*x)).sum();
@@ -103,14 +92,58 @@ pub fn make(
         samples: estimate.samples,
         seconds: estimate.seconds,
         cached_samples: made.cached_samples,
-        noise: noise.clone(),
+        noise: truth.noise.clone(),
         mean: shown.iter().map(|(name, picture)| ((*name).to_owned(), mean(picture))).collect(),
         pictures,
     };
-    Ok((Truth { estimate, masks, noise }, entry))
+    Ok((truth, entry))
+}
+
+/// What is known of a reference beside its pictures.
+pub struct Made {
+    knobs: BTreeMap<String, serde_json::Value>,
+    cached_samples: u64,
+}
+
+/// Gets the reference from the cache, or makes it.
+pub fn get(
+    plan: &Plan,
+    library: &Library,
+    cache: &Cache,
+    scene: &Scene,
+    light: &Light,
+    watch: &mut dyn FnMut(Step) -> Result<()>,
+) -> Result<(Truth, Made)> {
+    let gpu = Gpu::open(plan.adapter.as_deref(), &plan.limits)?;
+    let made = cache.get(&gpu, scene, library, &request(plan, light.sets.clone()), &plan.until, watch)?;
+    let estimate = made.estimate;
+    let masks = match (estimate.pictures.get("depth"), estimate.pictures.get("direct")) {
+        (Some(depth), Some(direct)) => Some(Masks::new(
+            &Input { name: "the reference's depth", picture: depth },
+            &Input { name: "the reference's direct", picture: direct },
+        )?),
+        _ => None,
+    };
+    let names: Vec<String> = estimate.means().map(|(name, _, _)| name.to_owned()).collect();
+    let noise: BTreeMap<String, f64> =
+        names.into_iter().filter_map(|name| estimate.noise(&name).map(|noise| (name, noise))).collect();
+    let about = Made { knobs: made.knobs, cached_samples: made.cached_samples };
+    Ok((Truth { estimate, masks, noise }, about))
 }
 
 impl Truth {
+    /// The relMSE of an output, or the most that is within the reference's noise.
+    /// `None` if the reference has no such output, or it has no relMSE.
+    pub fn error(&self, output: &str, picture: &Picture, options: &measure::Options) -> Result<Option<f64>> {
+        let Some(truth) = self.estimate.pictures.get(output) else { return Ok(None) };
+        let (test, truth) = (colors(picture), colors(truth));
+        let input = Input { name: output, picture: &test };
+        let truth = measure::Truth { name: "the reference", picture: &truth, variance: None };
+        let errors = Measures::new(Kind::of(output), input, truth, options)?.errors(None)?;
+        let noise = self.noise.get(output).copied().unwrap_or(0.0);
+        Ok(errors.get("relmse").map(|relmse| measure::above_noise(*relmse, noise)))
+    }
+
     /// Measures the run, and writes its pictures.
     pub fn hold_against(
         &self,
@@ -169,6 +202,7 @@ impl Truth {
             parts: done.parts,
             knobs: done.knobs,
             set: subject.coordinates(),
+            tuned: subject.tuned.clone(),
             clock: clock.to_owned(),
             clock_reason,
             repeats_ms: vec![gpu_ms.median],

@@ -189,6 +189,11 @@ pub fn within_noise(relmse: f64, noise: f64) -> bool {
     relmse <= 2.0 * noise
 }
 
+/// `relmse`, or the most that is [`within_noise`]: what is below can't be told apart.
+pub fn above_noise(relmse: f64, noise: f64) -> f64 {
+    relmse.max(2.0 * noise)
+}
+
 /// A refusal.
 fn refuse(code: &'static str, message: String, help: &str) -> Problem {
     Problem::input(code, message).help(help)

@@ -1,7 +1,7 @@
 //! Knobs: their defaults, what the user sets, and what is allowed.
 
 use super::world::World;
-use super::{Named, PlannedKnob, ScopeId};
+use super::{Named, Plan, PlannedKnob, ScopeId};
 use crate::document::{Allowed, Entries, Knob, Literal};
 use crate::expr::Value;
 use crate::problem::{Place, Problem, Source};
@@ -64,10 +64,10 @@ impl World<'_> {
             let source = Source::new("--set", format!("{name}={text}"));
             let name_place = source.at(0..name.len());
             let value_place = source.at(name.len() + 1..source.text().len());
-            let index = match self.knob_named(name, &name_place) {
+            let index = match named(&self.knobs, name) {
                 Ok(index) => index,
                 Err(problem) => {
-                    self.report(problem);
+                    self.report(problem.at(&name_place, "set here"));
                     continue;
                 }
             };
@@ -84,29 +84,43 @@ impl World<'_> {
             }
         }
     }
+}
 
-    fn knob_named(&self, name: &str, place: &Place) -> Result<usize, Problem> {
-        if let Some(index) = self.knobs.iter().position(|knob| knob.path == name) {
-            return Ok(index);
+/// The index of the knob with this path, or the only one whose path ends with this name.
+fn named(knobs: &[PlannedKnob], name: &str) -> Result<usize, Problem> {
+    if let Some(index) = knobs.iter().position(|knob| knob.path == name) {
+        return Ok(index);
+    }
+    let last = |path: &str| path.rsplit('.').next() == Some(name);
+    let found: Vec<usize> = (0..knobs.len()).filter(|&i| last(&knobs[i].path)).collect();
+    match found.as_slice() {
+        [index] => Ok(*index),
+        [] => {
+            let last = |path| str::rsplit(path, '.').next().unwrap_or_default();
+            let of_all = |path| if name.contains('.') { path } else { last(path) };
+            Err(Problem::input("unknown-knob", format!("there is no knob `{name}`"))
+                .suggest(name, knobs.iter().map(|knob| of_all(&knob.path))))
         }
-        let last = |path: &str| path.rsplit('.').next() == Some(name);
-        let found: Vec<usize> = (0..self.knobs.len()).filter(|&i| last(&self.knobs[i].path)).collect();
-        match found.as_slice() {
-            [index] => Ok(*index),
-            [] => {
-                let last = |path| str::rsplit(path, '.').next().unwrap_or_default();
-                let of_all = |path| if name.contains('.') { path } else { last(path) };
-                Err(Problem::input("unknown-knob", format!("there is no knob `{name}`"))
-                    .at(place, "set here")
-                    .suggest(name, self.knobs.iter().map(|knob| of_all(&knob.path))))
-            }
-            several => {
-                let paths: Vec<&str> = several.iter().map(|&i| self.knobs[i].path.as_str()).collect();
-                Err(Problem::input("ambiguous-knob", format!("{} knobs are called `{name}`", paths.len()))
-                    .at(place, "set here")
-                    .help(format!("say which: {}", paths.join(", "))))
-            }
+        several => {
+            let paths: Vec<&str> = several.iter().map(|&i| knobs[i].path.as_str()).collect();
+            Err(Problem::input("ambiguous-knob", format!("{} knobs are called `{name}`", paths.len()))
+                .help(format!("say which: {}", paths.join(", "))))
         }
+    }
+}
+
+impl Plan {
+    /// The knob with this path, or the only one whose path ends with this name.
+    pub fn knob(&self, name: &str) -> Result<&PlannedKnob, Problem> {
+        named(&self.knobs, name).map(|index| &self.knobs[index])
+    }
+}
+
+impl PlannedKnob {
+    /// The value that a text means, if the knob allows it.
+    pub fn read(&self, text: &str) -> Result<Value, Problem> {
+        let source = Source::new("value", text);
+        read(&self.knob, &self.path, text, &source.at(0..text.len()))
     }
 }
 

@@ -112,14 +112,16 @@ fn only_what_changed_runs() {
     assert!(with(&light, "light_maps/") && with(&light, "light/") && with(&light, "trace/"));
     let block = after(&[Cause::Moving]);
     assert!(!block.contains("voxelize/still") && block.contains("voxelize/moving"));
-    assert!(block.contains("payload/clear_moving") && with(&block, "light/") && with(&block, "surfaces/"));
+    assert!(
+        block.contains("payload/clear_sums_moving") && with(&block, "light/") && with(&block, "surfaces/")
+    );
     let camera = after(&[Cause::Camera]);
     assert_eq!(
         camera.iter().map(String::as_str).collect::<Vec<_>>(),
         ["display/tone", "picture", "surfaces/surfaces", "trace/cones"]
     );
     let rest: Vec<_> = whole.difference(&block).collect();
-    assert_eq!(rest, ["payload/begin_still", "payload/clear_still", "voxelize/still"]);
+    assert_eq!(rest, ["payload/clear_bits_still", "payload/clear_sums_still", "voxelize/still"]);
 }
 
 /// What rays go through and what gives light are made anew where something moves: a scene that is played to a time is

@@ -52,7 +52,7 @@ fn dropped(scene: &Scene) -> Vec<String> {
     names
 }
 
-const MOTION: [&str; 3] = ["payload/clear_moving", "payload/begin_moving", "voxelize/moving"];
+const MOTION: [&str; 3] = ["payload/clear_sums_moving", "payload/clear_bits_moving", "voxelize/moving"];
 const EMISSION: [&str; 3] = ["storage/emitted", "mipmap_emitted/two", "mipmap_emitted/last"];
 
 #[test]

@@ -227,6 +227,7 @@ fn run(folder: &Path, scene: &str, (at, number): (usize, usize), setting: &Setti
             vec![]
         },
         memory: Memory { peak_bytes: (ms * 300_000.0) as u64 },
+        tuned: BTreeMap::new(),
         lacks: if setting.pipeline == "beta" {
             vec!["glossy surfaces are rendered matt".to_owned()]
         } else {

@@ -27,6 +27,7 @@ fn run(set: &[(&str, &str)], ms: f64, relmse: f64) -> Run {
         masked: BTreeMap::new(),
         within_noise: Vec::new(),
         memory: Memory::default(),
+        tuned: BTreeMap::new(),
         lacks: Vec::new(),
         pictures: BTreeMap::new(),
     }

@@ -120,7 +120,11 @@ impl Atlas {
 impl Scene {
     /// The scene's layout, made when it is first asked for (which can take seconds) and then kept with the scene.
     pub fn atlas(&self) -> &Atlas {
-        self.atlas.get_or_init(|| Arc::new(Atlas::of(self, crate::cache::folder("atlases").as_deref())))
+        self.atlas.get_or_init(|| {
+            // Where there is no folder, nothing is kept.
+            let folder = crate::cache::folder_of_user().ok().map(|folder| folder.join("atlases"));
+            Arc::new(Atlas::of(self, folder.as_deref()))
+        })
     }
 }
 

@@ -1,0 +1,12 @@
+// How large a triangle is: which ones are small, that is voxelized by a thread of their own, is up to the knob `cutoff`
+// (R 4.1.3: of the sizes that it compares, this area worked best).
+
+import lib/columns;
+
+/// Area in the plane that its columns cross, in voxels²; of what lies outside the grid no more than its bounds there.
+fn projected_area(placed: Placed) -> f32 {
+    let u = vec2f(placed.corners[1].xy - placed.corners[0].xy) / f32(UNITS);
+    let v = vec2f(placed.corners[2].xy - placed.corners[0].xy) / f32(UNITS);
+    let bounds = vec2f(placed.size.xy + 1);
+    return min(0.5 * abs(u.x * v.y - u.y * v.x), bounds.x * bounds.y);
+}

@@ -1,0 +1,53 @@
+// Voxelizes small triangles, with a thread for each, and cuts large ones into chunks for workgroups (lib/chunks): what
+// R 4.1.1 says that Schwarz and Pantaleoni do by sorting, with a queue.
+//
+// A full queue takes no more: the thread then voxelizes the large triangle itself.
+// Reads per triangle 3 corners and what the payload wants; writes per fragment what the payload does, and per chunk 2
+// words.
+
+import lib/chunks;
+import lib/cutoff;
+import lib/dispatch;
+import lib/groups;
+
+struct Knobs {
+    separability: u32,
+    cutoff: f32,
+}
+
+var<uniform> knobs: Knobs;
+
+struct Geometry {
+    first: u32,
+    triangles: u32,
+}
+
+var<uniform> geometry: Geometry;
+/// A triangle and the number of its chunk.
+var<storage, read_write> queue: array<vec2u>;
+var<storage, read_write> queue_count: array<atomic<u32>, 1>;
+
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
+    let triangle = linear_index(id, workgroups, 64u);
+    if triangle >= geometry.triangles {
+        return;
+    }
+    let placed = placed_of(geometry.first + triangle);
+    if !placed.meets {
+        return;
+    }
+    if projected_area(placed) > knobs.cutoff {
+        let chunks = chunks_of(placed);
+        let place = atomicAdd(&queue_count[0], chunks);
+        let room = arrayLength(&queue) - min(place, arrayLength(&queue));
+        for (var i = 0u; i < min(chunks, room); i++) {
+            queue[place + i] = vec2u(placed.triangle, i);
+            grow_groups(place + i);
+        }
+        if chunks <= room {
+            return;
+        }
+    }
+    fill_all(placed, knobs.separability);
+}
