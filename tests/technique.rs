@@ -1,6 +1,8 @@
 //! Is the pipeline `cones` right? Its pictures and voxels against oracles that share no code with it: an integrator
 //! without voxels, closed forms, exact tests of overlap. Each oracle is also made wrong on purpose, which must show.
 
+#[path = "technique/atlas.rs"]
+mod atlas;
 #[path = "technique/cornell.rs"]
 mod cornell;
 #[path = "technique/environment.rs"]

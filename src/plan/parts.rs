@@ -10,7 +10,7 @@ use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 /// What every scene gives, by the names that kernels call it.
-pub const SCENE_RESOURCES: [&str; 11] = crate::scene::buffers::NAMES;
+pub const SCENE_RESOURCES: [&str; 12] = crate::scene::buffers::NAMES;
 
 /// The modules of all parts, by the names behind `role/`. Two of one name are reported.
 pub(super) fn modules(players: &[(&Player, ScopeId)], world: &mut World<'_>) -> BTreeMap<String, Module> {

@@ -18,7 +18,7 @@ type Triangle = [Point; 3];
 
 /// Which rule says that a triangle fills a voxel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Rule {
+pub enum Rule {
     /// 26-separating: it meets the cube.
     Conservative,
     /// 6-separating (Schwarz and Seidel 2010, "Fast Parallel Surface and Solid Voxelization on GPUs", 4.1): the plane
@@ -29,7 +29,7 @@ enum Rule {
 
 /// What happens when they only touch.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Ties {
+pub enum Ties {
     Count,
     DoNotCount,
 }
@@ -99,7 +99,7 @@ fn fills(triangle: &Triangle, center: Point, rule: Rule, ties: Ties) -> bool {
 }
 
 /// For each voxel how many triangles fill it.
-fn count(triangles: &[Triangle], resolution: i64, rule: Rule, ties: Ties) -> Vec<u32> {
+pub fn count(triangles: &[Triangle], resolution: i64, rule: Rule, ties: Ties) -> Vec<u32> {
     let mut counts = vec![0; (resolution * resolution * resolution) as usize];
     for triangle in triangles {
         let range = |axis: usize| {
@@ -121,22 +121,26 @@ fn count(triangles: &[Triangle], resolution: i64, rule: Rule, ties: Ties) -> Vec
 }
 
 /// What the program's voxelizer counts.
-fn counted(scene: &Path, resolution: i64, rule: Rule) -> Vec<u32> {
+pub fn counted(scene: &Path, resolution: i64, rule: Rule) -> Vec<u32> {
     let separability = if rule == Rule::Thin { 6 } else { 26 };
     let options = format!("--set resolution={resolution} --set separability={separability}");
     let [picture] = render(scene, "occupancy", &options, ["occupancy"]);
     picture.texels().map(|texel| texel[0] as u32).collect()
 }
 
+pub fn filled(counts: &[u32]) -> usize {
+    counts.iter().filter(|count| **count > 0).count()
+}
+
 /// Voxels that differ, and how many are filled.
 fn differences(a: &[u32], b: &[u32]) -> (usize, usize) {
     assert_eq!(a.len(), b.len());
-    (a.iter().zip(b).filter(|(a, b)| a != b).count(), b.iter().filter(|n| **n > 0).count())
+    (a.iter().zip(b).filter(|(a, b)| a != b).count(), filled(b))
 }
 
 /// Triangles whose corners lie on a lattice of `step` units, within `reach` voxels of each other; two small ones in
 /// the corners of the scene fix the grid.
-fn random(number: u64, reach: i64, step: i64) -> Vec<Triangle> {
+pub fn random(number: u64, reach: i64, step: i64) -> Vec<Triangle> {
     // The grid keeps 1.5 voxels around the scene.
     let (low, high) = (3 * HALF, 3 * HALF + 29 * VOXEL);
     let pick =
@@ -157,7 +161,7 @@ fn random(number: u64, reach: i64, step: i64) -> Vec<Triangle> {
 }
 
 /// Some made to what is hard: points, segments along axes and across, slivers, triangles in a plane along the axes.
-fn hard(mut triangles: Vec<Triangle>) -> Vec<Triangle> {
+pub fn hard(mut triangles: Vec<Triangle>) -> Vec<Triangle> {
     for (i, [a, b, c]) in triangles.iter_mut().enumerate().skip(2) {
         match i % 8 {
             0 => (*b, *c) = (*a, *a),
@@ -173,13 +177,13 @@ fn hard(mut triangles: Vec<Triangle>) -> Vec<Triangle> {
     triangles
 }
 
-fn snapped(triangles: &[Triangle]) -> Vec<Triangle> {
+pub fn snapped(triangles: &[Triangle]) -> Vec<Triangle> {
     let odd = |x: i64| 2 * x.div_euclid(2) + 1;
     triangles.iter().map(|triangle| triangle.map(|corner| corner.map(odd))).collect()
 }
 
 /// The program's scene of these triangles. A voxel becomes 1/32 m, so that no position is rounded anywhere.
-fn scene(studio: &Studio, triangles: &[Triangle]) -> std::path::PathBuf {
+pub fn scene(studio: &Studio, triangles: &[Triangle]) -> std::path::PathBuf {
     let metres = |x: i64| (x - 3 * HALF) as f32 / (VOXEL * 32) as f32;
     let triangles: Vec<_> = triangles.iter().map(|t| t.map(|corner| corner.map(metres))).collect();
     studio.triangles(&triangles)
