@@ -14,9 +14,21 @@ fn or_word(at: u32, mask: u32) -> u32 {
     return atomicOr(&filled[at], mask);
 }
 
-fn mark_filled(number: u32) {
-    let word = word_of(number);
-    if or_word(summary_words(arrayLength(&filled)) + word, mask_of(number)) == 0u {
+fn mark_word(word: u32, mask: u32) {
+    if mask != 0u && or_word(summary_words(arrayLength(&filled)) + word, mask) == 0u {
         or_word(word_of(word), mask_of(word));
+    }
+}
+
+fn mark_filled(number: u32) {
+    mark_word(word_of(number), mask_of(number));
+}
+
+/// Voxel `first` and those behind it, by the bits from the lowest.
+fn mark_filled_from(first: u32, bits: u32) {
+    let shift = first % 32u;
+    mark_word(word_of(first), bits << shift);
+    if shift > 0u {
+        mark_word(word_of(first) + 1u, bits >> (32u - shift));
     }
 }
