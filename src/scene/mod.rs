@@ -20,7 +20,7 @@
 //! | [`bvh`] | the triangles as rays find them |
 //! | [`atlas`] | the surfaces laid out flat |
 //! | [`features`] | what conditions can ask about a scene |
-//! | [`generate`] | scenes made from published numbers |
+//! | [`generate`] | scenes made by a command |
 //! | [`listing`] | what scenes a folder has |
 
 pub mod atlas;
