@@ -1,14 +1,14 @@
-//! Is the pipeline `cones` right? Its pictures and voxels against oracles that share no code with it: an integrator
-//! without voxels, closed forms, exact tests of overlap. Each oracle is also made wrong on purpose, which must show.
+//! Is the pipeline `cones` right? Its pictures against oracles that share no code with it: an integrator
+//! without voxels, closed forms. Each oracle is also made wrong on purpose, which must show.
 
-#[path = "technique/atlas.rs"]
-mod atlas;
 #[path = "technique/cornell.rs"]
 mod cornell;
 #[path = "technique/environment.rs"]
 mod environment;
 #[path = "technique/fields.rs"]
 mod fields;
+#[path = "support/glb.rs"]
+mod glb;
 #[path = "technique/integrator.rs"]
 mod integrator;
 #[path = "technique/lights.rs"]
@@ -17,9 +17,5 @@ mod lights;
 mod program;
 #[path = "technique/scenes.rs"]
 mod scenes;
-#[path = "support/scenes.rs"]
-mod support;
-#[path = "technique/voxels.rs"]
-mod voxels;
 #[path = "technique/world.rs"]
 mod world;

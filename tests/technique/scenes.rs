@@ -1,8 +1,8 @@
 //! Scenes made for one test: variants of the Cornell box, and loose triangles.
 
+use super::glb::glb;
 use super::program::shipped;
 use serde_json::{Value, json};
-use std::fmt::Write;
 use std::path::PathBuf;
 use tempfile::TempDir;
 
@@ -76,25 +76,4 @@ impl Studio {
         });
         self.file("triangles.glb", &glb(&document, &bytes))
     }
-}
-
-/// A binary glTF file: both chunks in multiples of 4 bytes.
-fn glb(document: &Value, binary: &[u8]) -> Vec<u8> {
-    let mut text = document.to_string();
-    let spaces = text.len().next_multiple_of(4) - text.len();
-    let _infallible = write!(text, "{:spaces$}", "");
-    let word = |n: usize| (n as u32).to_le_bytes();
-    let length = 12 + 8 + text.len() + 8 + binary.len();
-    let pieces: [&[u8]; 9] = [
-        b"glTF",
-        &word(2),
-        &word(length),
-        &word(text.len()),
-        b"JSON",
-        text.as_bytes(),
-        &word(binary.len()),
-        b"BIN\0",
-        binary,
-    ];
-    pieces.concat()
 }

@@ -37,7 +37,8 @@ fn solids() -> Vec<Solid> {
             };
             let mut at = |axis: usize| [16.0, 47.0][i >> axis & 1] + rng.f64();
             let center = DVec3::new(at(0), at(1), at(2));
-            let turned = DQuat::from_euler(EulerRot::XYZ, TAU * i as f64 / 7.3, 0.4 + i as f64, 1.1 * i as f64);
+            let turned =
+                DQuat::from_euler(EulerRot::XYZ, TAU * i as f64 / 7.3, 0.4 + i as f64, 1.1 * i as f64);
             Solid { shape, center, turned }
         })
         .collect()

@@ -1,0 +1,25 @@
+//! Do all voxelizers fill the same voxels, and are they the right ones? Each method against exact tests of overlap in
+//! integers, on random triangles, hard cases and scans, and against properties that need no oracle. Every oracle is
+//! also made wrong on purpose, which must show.
+
+mod atlas;
+mod crowds;
+#[path = "../support/glb.rs"]
+mod glb;
+mod grids;
+mod hard;
+mod lattice;
+mod meshes;
+mod model;
+mod oracle;
+mod payloads;
+mod properties;
+mod random;
+mod scans;
+mod solid;
+mod sums;
+#[path = "../support/scenes.rs"]
+mod support;
+mod textures;
+mod voxelizer;
+mod wide;
