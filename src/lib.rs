@@ -4,6 +4,7 @@
 //! [`graph`] (kernels reflected, checked) → [`schedule`] (order, memory) → [`frame`] (GPU objects) → [`record`] (times,
 //! pictures). Everything up to the schedule is pure. [`session`] goes the whole way.
 
+mod cache;
 pub mod cli;
 pub mod compare;
 pub mod comparison;

@@ -5,6 +5,7 @@
 //! pixel, and `estimate.json`
 //! says which is whole. The latter is written last, so that a run that was stopped leaves what there was before.
 
+use crate::cache;
 use crate::converge::{Estimate, Step, Until, VARIANCE, converge};
 use crate::device::Gpu;
 use crate::frame::Clock;
@@ -46,26 +47,14 @@ pub struct Made {
     pub knobs: BTreeMap<String, serde_json::Value>,
 }
 
-/// The folder that `VOXGI_CACHE` names, or else `voxgi` in the user's cache folder.
-pub fn folder_of_user() -> Result<PathBuf> {
-    let variable = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    let folder = variable("VOXGI_CACHE")
-        .or_else(|| Some(variable("XDG_CACHE_HOME")?.join("voxgi")))
-        .or_else(|| Some(variable("HOME")?.join(".cache/voxgi")));
-    Ok(folder.ok_or_else(|| {
-        Problem::input("no-cache", "there is no folder to keep anything in")
-            .help("set VOXGI_CACHE to a folder")
-    })?)
-}
-
 impl Cache {
     pub fn at(folder: PathBuf) -> Self {
         Self { folder }
     }
 
-    /// The one in [`folder_of_user`].
+    /// The one in the user's cache.
     pub fn of_user() -> Result<Self> {
-        Ok(Self::at(folder_of_user()?.join("references")))
+        Ok(Self::at(cache::folder_of_user()?.join("references")))
     }
 
     /// The reference of a scene by the pipeline that `request` names, good enough for `until`: from the cache, as

@@ -70,6 +70,26 @@ pub struct Prepared {
 
 /// Parses, plans, links and schedules. Without a scene, what depends on it stays open.
 pub fn prepare(request: &Request, library: &Library, scene: Option<&Scene>) -> Result<Prepared> {
+    let facts = facts(request, scene);
+    let prepared = prepare_with(request, library, scene, facts.clone())?;
+    match scene {
+        // Only now is it known that they are asked for.
+        Some(scene) if prepared.names_slow() => {
+            let slow =
+                features::slow(scene).into_iter().map(|(name, feature)| (name.to_owned(), value(feature)));
+            prepare_with(request, library, Some(scene), facts.into_iter().chain(slow).collect())
+        }
+        _ => Ok(prepared),
+    }
+}
+
+/// The same where all that expressions can ask, but for the picture's size, is known.
+fn prepare_with(
+    request: &Request,
+    library: &Library,
+    scene: Option<&Scene>,
+    mut features: BTreeMap<String, Value>,
+) -> Result<Prepared> {
     if request.size.contains(&0) {
         let [w, h] = request.size;
         return Err(Problem::input("size", format!("a picture of {w}x{h} has no pixels"))
@@ -90,7 +110,6 @@ pub fn prepare(request: &Request, library: &Library, scene: Option<&Scene>) -> R
     }
     let source = library.pipeline(&request.pipeline)?;
     let document = document::parse(&source)?;
-    let mut features = facts(request, scene);
     let [width, height] = request.size.map(f64::from);
     features.insert("output.width".to_owned(), Value::Number(width));
     features.insert("output.height".to_owned(), Value::Number(height));
@@ -195,18 +214,22 @@ fn elements(scene: &Scene) -> plan::Elements {
     }
 }
 
-/// All names that expressions and conditions can ask, with their values; unknown ones where there is no scene.
+fn value(feature: features::Feature) -> Value {
+    match feature {
+        features::Feature::Number(n) => Value::Number(n),
+        features::Feature::Flag(f) => Value::Flag(f),
+        features::Feature::Vector(v) => Value::Vector(v.to_vec()),
+    }
+}
+
+/// All names that expressions and conditions can ask, with their values; unknown ones where there is no scene, and
+/// those that take long.
 fn facts(request: &Request, scene: Option<&Scene>) -> BTreeMap<String, Value> {
     let mut facts: BTreeMap<String, Value> =
-        features::NAMES.iter().map(|f| (f.name.to_owned(), Value::Unknown)).collect();
+        features::NAMES.iter().chain(features::SLOW).map(|f| (f.name.to_owned(), Value::Unknown)).collect();
     let features = scene.map(features::features).unwrap_or_default();
     for (name, feature) in features.into_iter().chain(request.claims.iter().copied()) {
-        let value = match feature {
-            features::Feature::Number(n) => Value::Number(n),
-            features::Feature::Flag(f) => Value::Flag(f),
-            features::Feature::Vector(v) => Value::Vector(v.to_vec()),
-        };
-        facts.insert(name.to_owned(), value);
+        facts.insert(name.to_owned(), value(feature));
     }
     let camera = scene.and_then(|s| s.cameras.get(request.camera));
     let seen = play::features(camera.unwrap_or(&Camera::framing(&Bounds::default())));
@@ -220,10 +243,20 @@ impl Prepared {
         let plan = &self.graph.plan;
         let places =
             plan.stages.iter().map(|stage| &stage.place).chain(plan.knobs.iter().map(|knob| &knob.place));
+        let places = places
+            .chain(plan.values.iter().map(|value| &value.place))
+            .chain(plan.resources.iter().map(|resource| &resource.place));
         let linked = self.graph.stages.iter().filter_map(|stage| stage.linked.as_ref());
         let kernels = linked.flat_map(|linked| linked.reflected.composed.segments.iter().map(|s| &s.source));
         let sources = places.map(|place| &place.source).chain(kernels);
         sources.map(|source| (source.name(), source.text())).collect()
+    }
+
+    /// Whether some file has the name of a feature that takes long; in a kernel that may be a field of `scene`.
+    fn names_slow(&self) -> bool {
+        let documents = self.documents();
+        let names = features::SLOW.iter().map(|feature| feature.name.trim_start_matches("scene."));
+        { names }.any(|name| documents.values().any(|text| text.contains(name)))
     }
 
     /// Makes the GPU objects and tells them all facts of the scene.

@@ -5,12 +5,12 @@
 //! pipeline, its parts and a knob; a later one takes its place. Scenes, size and other knobs are those it was found
 //! with, and bind nobody.
 
+use crate::cache;
 use crate::expr::Value;
 use crate::picture;
 use crate::plan::{Plan, PlannedKnob};
 use crate::problem::{Problem, Result};
 use crate::record::Adapter;
-use crate::reference;
 use crate::tune::{Outcome, values};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -110,7 +110,7 @@ impl Shelf {
     }
 
     pub fn of_user() -> Result<Self> {
-        Ok(Self::at(reference::folder_of_user()?.join("tuned")))
+        Ok(Self::at(cache::folder_of_user()?.join("tuned")))
     }
 
     /// Writes the file, and says which.

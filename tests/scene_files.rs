@@ -45,8 +45,59 @@ fn generated_scenes_are_those_in_the_repository() {
         assert_eq!(bytes, make(), "{name} differs from run to run");
         assert!(
             bytes == std::fs::read(own(name)).unwrap(),
-            "{name}: run the example generate_scenes and look at what differs"
+            "{name}: run `voxgi generate` and look at what differs"
         );
+    }
+}
+
+/// A generated scene, loaded; and the hash of its file.
+fn generated(name: &str) -> (Scene, String) {
+    let (file, make) = generate::find(name).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join(file);
+    let bytes = make();
+    std::fs::write(&path, &bytes).unwrap();
+    (load(&path).unwrap(), blake3::hash(&bytes).to_hex()[..16].to_owned())
+}
+
+#[test]
+fn the_large_triangle_spans_its_scene_and_lies_along_no_axis() {
+    let (scene, hash) = generated("triangle");
+    assert_eq!(hash, "d820a15f07a490e4");
+    assert_eq!((scene.triangles.len(), scene.vertices.len()), (1, 3));
+    assert_eq!(scene.bounds.max - scene.bounds.min, Vec3::new(2.0, 2.0, 0.8));
+    let [a, b, c] = [0, 1, 2].map(|i| scene.vertices[i].position);
+    let face = (b - a).cross(c - a);
+    assert!((face.normalize() - scene.vertices[0].normal).length() < 1e-6);
+    assert!(face.abs().cmpgt(Vec3::splat(0.5)).all(), "{face}");
+}
+
+/// Each triangle has the length of a step, and an area; its height is a ribbon's width, or less where that turns.
+#[test]
+fn the_hairball_is_a_ball_of_thin_triangles() {
+    let (scene, hash) = generated("hairball");
+    // The same bytes on every machine: were it otherwise, figures of it would not compare.
+    assert_eq!(hash, "18367c34b105c835");
+    assert!(scene.triangles.len() >= 1_000_000);
+    assert_eq!(scene.triangles.len(), generate::hairball::TRIANGLES as usize);
+    // Shared by the triangles of a strand: about one vertex for each.
+    assert!(scene.vertices.len() * 100 < scene.triangles.len() * 102, "{}", scene.vertices.len());
+    let radius = generate::hairball::RADIUS as f32;
+    let (low, high) = (scene.bounds.min, scene.bounds.max);
+    assert!(low.cmpgt(Vec3::splat(-radius)).all() && low.cmplt(Vec3::splat(-0.9 * radius)).all(), "{low}");
+    assert!(high.cmplt(Vec3::splat(radius)).all() && high.cmpgt(Vec3::splat(0.9 * radius)).all(), "{high}");
+    for vertex in &scene.vertices {
+        assert!(
+            vertex.position.length() < radius && (vertex.normal.length() - 1.0).abs() < 1e-4,
+            "{vertex:?}"
+        );
+    }
+    for triangle in &scene.triangles {
+        let [a, b, c] = [triangle.a, triangle.b, triangle.c].map(|i| scene.vertices[i as usize].position);
+        let longest = [b - a, c - b, a - c].map(Vec3::length).into_iter().fold(0.0, f32::max);
+        let height = (b - a).cross(c - a).length() / longest;
+        assert!((0.018..0.023).contains(&longest), "{longest}: {a} {b} {c}");
+        assert!((0.0001..0.0009).contains(&height), "{height}: {a} {b} {c}");
     }
 }
 

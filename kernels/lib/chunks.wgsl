@@ -6,6 +6,8 @@ import lib/columns;
 /// Columns of a segment.
 const SEGMENT: i32 = 16;
 const SEGMENTS_OF_A_CHUNK: u32 = 64u;
+/// In place of a triangle's number: nothing is to be done.
+const NO_TRIANGLE: u32 = 0xffffffffu;
 
 fn segments_across(placed: Placed) -> u32 {
     return u32((placed.size.x + SEGMENT) / SEGMENT);

@@ -3,6 +3,8 @@
 import lib/fill;
 import lib/grid;
 
+var<storage, read_write> filled: array<atomic<u32>>;
+
 /// Nothing more is known of a triangle.
 struct Surface {
     triangle: u32,

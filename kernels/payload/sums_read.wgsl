@@ -7,6 +7,7 @@ import lib/fixed;
 import lib/grid;
 import lib/is_filled;
 import lib/sum_words;
+import lib/surfel;
 
 var<storage, read> sums: array<u32>;
 /// The same of what moves.
@@ -29,16 +30,6 @@ fn fragments_at(at: u32) -> u32 {
     } @else {
         return min(sums[at], MOST_TERMS);
     }
-}
-
-/// The surface in a voxel.
-struct Surfel {
-    filled: bool,
-    albedo: vec3f,
-    /// Mean of the fragments' unit normals: shorter the less they agree, zero for two opposite faces.
-    normal: vec3f,
-    /// World space, metres; on the surface where that is flat.
-    position: vec3f,
 }
 
 /// Fragments in the voxel; more than MOST_TERMS of still triangles, or of moving ones, count as that many.

@@ -23,6 +23,9 @@ fn main(
     if place >= min(queue_count[0], arrayLength(&queue)) {
         return;
     }
+    if queue[place].x == NO_TRIANGLE {
+        return;
+    }
     let placed = placed_of(queue[place].x);
     let segment = queue[place].y * SEGMENTS_OF_A_CHUNK + local;
     let across = segments_across(placed);

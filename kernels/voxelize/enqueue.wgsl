@@ -1,7 +1,7 @@
 // Voxelizes small triangles, with a thread for each, and cuts large ones into chunks for workgroups (lib/chunks): what
 // R 4.1.1 says that Schwarz and Pantaleoni do by sorting, with a queue.
 //
-// A full queue takes no more: the thread then voxelizes the large triangle itself.
+// A triangle whose chunks find no room is voxelized by the thread itself; what room there was stays empty.
 // Reads per triangle 3 corners and what the payload wants; writes per fragment what the payload does, and per chunk 2
 // words.
 
@@ -41,8 +41,9 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workg
         let chunks = chunks_of(placed);
         let place = atomicAdd(&queue_count[0], chunks);
         let room = arrayLength(&queue) - min(place, arrayLength(&queue));
+        let chunk_of = select(NO_TRIANGLE, placed.triangle, chunks <= room);
         for (var i = 0u; i < min(chunks, room); i++) {
-            queue[place + i] = vec2u(placed.triangle, i);
+            queue[place + i] = vec2u(chunk_of, i);
             grow_groups(place + i);
         }
         if chunks <= room {

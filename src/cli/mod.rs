@@ -215,6 +215,7 @@ fn memory(text: &str) -> Result<u64, String> {
 /// Runs the command line and says the process's exit code.
 pub fn main() -> ExitCode {
     let cli = Cli::parse();
+    run::watch_unwrapping();
     let json = match &cli.command {
         Command::Render(args) => args.json,
         Command::Compare(args) => args.json(),

@@ -78,6 +78,17 @@ pub fn steps(what: &str) -> ProgressBar {
 
 const STEPS: u64 = 1000;
 
+/// From now on a bar shows how far surfaces are unwrapped, while that goes on.
+pub fn watch_unwrapping() {
+    let bar = steps("unwrapping surfaces");
+    crate::scene::atlas::watch(move |done| {
+        bar.set_position((done * STEPS as f64) as u64);
+        if done >= 1.0 {
+            bar.finish_and_clear();
+        }
+    });
+}
+
 pub fn show(bar: &ProgressBar, step: &Step) {
     bar.set_position((step.done * STEPS as f64) as u64);
     let left = step.left.map_or_else(String::new, |left| format!(", {left:.0} s left"));

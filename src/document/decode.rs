@@ -10,7 +10,7 @@ use crate::problem::Problem;
 
 const SHARED: [&str; 7] = ["about", "knobs", "values", "samplers", "resources", "stages", "lacks"];
 const OF_PIPELINES: [&str; 3] = ["parts", "outputs", "progress"];
-const OF_PARTS: [&str; 4] = ["role", "module", "modules", "exports"];
+const OF_PARTS: [&str; 6] = ["role", "module", "modules", "moving", "order_dependent", "exports"];
 
 pub(super) const COMPARES: [(&str, Compare); 6] = [
     ("Less", Compare::Less),
@@ -105,9 +105,12 @@ impl Reader<'_> {
         let role = self.required(fields, "role").and_then(|tree| self.name(tree));
         let module = self.optional(fields.get("module"), Self::text);
         let modules = self.entries(fields.get("modules"), Self::text);
+        let moving = self.entries(fields.get("moving"), Self::name);
+        let order_dependent = self.optional(fields.get("order_dependent"), Self::text);
         let exports = self.optional(fields.get("exports"), |reader, tree| reader.list(tree, Self::name));
         let exports = exports?.unwrap_or_default();
-        Some(Root::Part { role: role?, module: module?, modules: modules?, exports })
+        let (module, modules, moving) = (module?, modules?, moving?);
+        Some(Root::Part { role: role?, module, modules, moving, order_dependent: order_dependent?, exports })
     }
 
     fn knob(&mut self, tree: &Tree) -> Option<Knob> {

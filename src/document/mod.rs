@@ -90,6 +90,10 @@ pub enum Root {
         module: Option<Spanned<String>>,
         /// Further modules: `NAME` → the one behind `role/NAME`, for names that are no roles of their own.
         modules: Entries<String>,
+        /// Binding of its module → the resource that stands behind it in stages over what moves.
+        moving: Entries<String>,
+        /// Why what its module writes depends on the order of threads; stages that import it say so.
+        order_dependent: Option<Spanned<String>>,
         /// Resources, values and knobs of this part that the pipeline and other parts can name.
         exports: Vec<Spanned<String>>,
     },

@@ -172,7 +172,10 @@ fn literal(written: &str) -> Literal {
 #[test]
 fn absent_things_are_empty() {
     let document = document(r#"Part(about: "a", role: "storage")"#).unwrap();
-    let Root::Part { role, module, modules, exports } = &document.root else { panic!("a part") };
+    let Root::Part { role, module, modules, moving, order_dependent, exports } = &document.root else {
+        panic!("a part")
+    };
+    assert!(moving.is_empty() && order_dependent.is_none());
     assert_eq!((role.value.as_str(), module, modules.len(), exports.len()), ("storage", &None, 0, 0));
     assert!(document.knobs.is_empty() && document.stages.is_empty() && document.resources.is_empty());
 }

@@ -3,7 +3,7 @@
 use super::facts;
 use super::uniform::{Filler, is_engine_uniform};
 use super::{Bound, Resource, Shape, Touch, Usage, resource};
-use crate::document::Sampler;
+use crate::document::{Geometry, Sampler};
 use crate::expr::Value;
 use crate::kernel::{Binding, BindingKind, Entry, Reflected};
 use crate::plan::{Named, Plan, PlannedStage, Reference, ResourceId, ResourceKind, ScopeId};
@@ -112,12 +112,20 @@ impl Binder<'_> {
             return Some(*reference);
         }
         let scope = self.scope(binding);
-        if let Some(Named::Resource(reference)) = self.plan.lookup(scope, &binding.name) {
+        let name = self.name(binding);
+        if let Some(Named::Resource(reference)) = self.plan.lookup(scope, name) {
             return Some(*reference);
         }
         let at = (&binding.place, "the kernel binds this".to_owned());
-        self.problems.push(missing(self.plan, self.stage, scope, &binding.name, at));
+        self.problems.push(missing(self.plan, self.stage, scope, name, at));
         None
+    }
+
+    /// What a binding is called in its scope: a role's module can have others in stages over what moves.
+    fn name<'b>(&'b self, binding: &'b Binding) -> &'b str {
+        let module = binding.role.as_ref().and_then(|role| self.plan.modules.get(role));
+        let moving = module.filter(|_| self.stage.geometry == Geometry::Moving);
+        moving.and_then(|module| module.moving.get(&binding.name)).unwrap_or(&binding.name)
     }
 
     fn resource(&mut self, use_: &Use<'_>, reference: Reference, vertex: bool) -> Option<Bound> {

@@ -5,7 +5,6 @@ use super::facts;
 use super::{
     Action, Draw, Graph, Linked, Raster, Resource, Stage, Threads, Touch, Usage, check, resource, target,
 };
-use crate::document::Geometry;
 use crate::expr::{Names, Value};
 use crate::kernel::{self, Choice, Composed, Entry, Reflected, Variants, compose};
 use crate::library::Library;
@@ -79,8 +78,8 @@ pub fn link(plan: Plan, linking: Linking<'_>) -> Result<Graph> {
                 Condition::Holds | Condition::Unknown(_) => None,
             },
             undecided: matches!(planned.condition, Condition::Unknown(_)),
+            order_dependent: planned.order_dependent.clone().or_else(|| by_module(&plan, linked.as_ref()?)),
             linked,
-            order_dependent: planned.order_dependent.clone(),
         });
     }
     let graph = Graph { plan, resources, stages, warnings };
@@ -91,22 +90,14 @@ pub fn link(plan: Plan, linking: Linking<'_>) -> Result<Graph> {
 }
 
 /// Names as conditions in kernels see them: what the stage sees, then the features.
-/// True in the kernels of stages that go over what moves alone.
-const GEOMETRY_MOVES: &str = "geometry.moving";
-
-/// What the conditions of a stage's kernel can ask for.
 struct ScopeNames<'a> {
     plan: &'a Plan,
     scope: ScopeId,
-    geometry: Geometry,
     features: &'a BTreeMap<String, Value>,
 }
 
 impl Names for ScopeNames<'_> {
     fn get(&self, name: &str) -> Option<Value> {
-        if name == GEOMETRY_MOVES {
-            return Some(Value::Flag(self.geometry == Geometry::Moving));
-        }
         match self.plan.lookup(self.scope, name) {
             Some(Named::Knob(index)) => self.plan.knobs.get(*index).map(|k| k.value.clone()),
             Some(Named::Index(value)) => Some(value.clone()),
@@ -120,8 +111,7 @@ impl Names for ScopeNames<'_> {
 
     fn known(&self) -> Vec<String> {
         let visible = self.plan.visible(self.scope).into_iter().filter(|n| self.get(n).is_some());
-        let own = std::iter::once(GEOMETRY_MOVES.to_owned());
-        visible.map(str::to_owned).chain(self.features.keys().cloned()).chain(own).collect()
+        visible.map(str::to_owned).chain(self.features.keys().cloned()).collect()
     }
 }
 
@@ -198,8 +188,7 @@ impl Linker<'_> {
     fn reflect(&mut self, planned: &PlannedStage) -> Result<Arc<Reflected>> {
         let roles =
             self.plan.modules.iter().map(|(role, module)| (role.clone(), module.kernel.clone())).collect();
-        let (scope, geometry) = (planned.scope, planned.geometry);
-        let names = ScopeNames { plan: self.plan, scope, geometry, features: self.linking.features };
+        let names = ScopeNames { plan: self.plan, scope: planned.scope, features: self.linking.features };
         let composed = compose(self.linking.library, &planned.kernel, &planned.kernel_place, &roles, &names)?;
         let overrides = self.overrides(planned, &composed);
         self.linking.variants.reflect(&composed, &overrides)
@@ -287,6 +276,12 @@ impl Linker<'_> {
             }
         }
     }
+}
+
+/// Why a module that the stage imports makes it depend on the order of threads.
+fn by_module(plan: &Plan, linked: &Linked) -> Option<String> {
+    let roles = linked.reflected.bindings.iter().filter_map(|binding| binding.role.as_deref());
+    roles.filter_map(|role| plan.modules.get(role)).find_map(|module| module.order_dependent.clone())
 }
 
 fn indirect(reference: &plan::Reference) -> Touch {

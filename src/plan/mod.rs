@@ -190,6 +190,10 @@ pub struct Module {
     pub kernel: String,
     pub scope: ScopeId,
     pub place: Place,
+    /// Bindings that stand for other resources in stages over what moves.
+    pub moving: BTreeMap<String, String>,
+    /// Why what it writes depends on the order of threads.
+    pub order_dependent: Option<String>,
 }
 
 #[derive(Clone, Debug)]

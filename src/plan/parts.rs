@@ -10,14 +10,28 @@ use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 /// What every scene gives, by the names that kernels call it.
-pub const SCENE_RESOURCES: [&str; 11] = crate::scene::buffers::NAMES;
+pub const SCENE_RESOURCES: [&str; 12] = crate::scene::buffers::NAMES;
 
 /// The modules of all parts, by the names behind `role/`. Two of one name are reported.
 pub(super) fn modules(players: &[(&Player, ScopeId)], world: &mut World<'_>) -> BTreeMap<String, Module> {
     let mut modules: BTreeMap<String, Module> = BTreeMap::new();
     for (player, scope) in players {
         for (name, module) in player.modules() {
-            let found = Module { kernel: module.value.clone(), scope: *scope, place: module.place.clone() };
+            let mut found = Module {
+                kernel: module.value.clone(),
+                scope: *scope,
+                place: module.place.clone(),
+                moving: BTreeMap::new(),
+                order_dependent: None,
+            };
+            // What is said of the part's module holds for that of its own role.
+            if let Root::Part { moving, order_dependent, .. } = &player.document.root
+                && name == player.role
+            {
+                let names = moving.iter().map(|(from, to)| (from.value.clone(), to.value.clone()));
+                found.moving = names.collect();
+                found.order_dependent = order_dependent.as_ref().map(|reason| reason.value.clone());
+            }
             if let Some(first) = modules.get(name) {
                 let problem =
                     Problem::input("duplicate-module", format!("two modules stand behind `role/{name}`"))

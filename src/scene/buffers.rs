@@ -5,7 +5,7 @@ use bytemuck::{NoUninit, Zeroable};
 use std::borrow::Cow;
 
 /// Names of the built-in storage resources. [`super::layout::layout`] tells their elements.
-pub const NAMES: [&str; 11] = [
+pub const NAMES: [&str; 12] = [
     "vertices",
     "vertex_extras",
     "triangles",
@@ -17,6 +17,7 @@ pub const NAMES: [&str; 11] = [
     "environment",
     "emitters",
     "bvh",
+    "atlas",
 ];
 
 impl Scene {
@@ -35,13 +36,14 @@ impl Scene {
             "environment" => list(self.environment.as_ref().map_or(&[][..], |e| &e.texels)),
             "emitters" => owned(&super::emitters::emitters(self)),
             "bvh" => owned(&super::bvh::words(self)),
+            "atlas" => owned(&self.atlas().pairs()),
             _ => return None,
         })
     }
 }
 
-fn owned<T: NoUninit>(items: &[T]) -> Cow<'static, [u8]> {
-    Cow::Owned(bytemuck::cast_slice(items).to_vec())
+fn owned<T: NoUninit + Zeroable>(items: &[T]) -> Cow<'static, [u8]> {
+    Cow::Owned(list(items).into_owned())
 }
 
 fn list<T: NoUninit + Zeroable>(items: &[T]) -> Cow<'_, [u8]> {

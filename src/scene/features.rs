@@ -1,6 +1,7 @@
 //! Features: what conditions of a pipeline can ask about a scene, as numbers, flags and vectors.
 //!
-//! [`NAMES`] says what there is without a scene at hand; [`features`] gives the values, in the same order.
+//! [`NAMES`] says what there is without a scene at hand; [`features`] gives the values, in the same order. [`SLOW`] and
+//! [`slow`] are the same for what takes long.
 
 use super::Scene;
 use super::environment::Environment;
@@ -108,6 +109,27 @@ features! { scene, used;
     "scene.environment_turn" Number "Radians by which the environment is turned about the vertical axis."
         = environment(scene, |e| e.turn.into());
     "cameras.total" Number "Number of cameras." = scene.cameras.len() as f64;
+}
+
+/// Features that take long to find out: what a pipeline is told only if one of its files has the name.
+pub const SLOW: &[FeatureName] = &[
+    FeatureName {
+        name: "scene.atlas_extent",
+        kind: FeatureKind::Number,
+        meaning: "Side of the square in which the buffer `atlas` lays out all surfaces, in metres.",
+    },
+    FeatureName {
+        name: "scene.atlas_lost",
+        kind: FeatureKind::Number,
+        meaning: "Number of triangles without area, which have no place there.",
+    },
+];
+
+/// All features of `scene` that take long, in the order of [`SLOW`].
+pub fn slow(scene: &Scene) -> Vec<(&'static str, Feature)> {
+    let atlas = scene.atlas();
+    let values = [atlas.extent, atlas.lost as f64].map(Feature::Number);
+    SLOW.iter().map(|feature| feature.name).zip(values).collect()
 }
 
 /// Of an effect: its flag, and what conditions are told besides of a scene that has it, and of one that has not.

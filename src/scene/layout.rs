@@ -305,6 +305,7 @@ static EMITTER: StructLayout = layout_of!(Emitter as "Emitter" {
     threshold: F32, cos_outer: F32, cos_inner: F32
 });
 static BVH: StructLayout = StructLayout { name: "vec4u", stride: 16, fields: &[] };
+static ATLAS: StructLayout = StructLayout { name: "vec2u", stride: 8, fields: &[] };
 static CAMERA: StructLayout = layout_of!(CameraUniform as "Camera" {
     view_projection: Mat4x4F, inverse_view_projection: Mat4x4F, position: Vec3F, near: F32, forward: Vec3F,
     aspect: F32, right: Vec3F, parallel: F32, up: Vec3F, distance: Vec4F
@@ -327,6 +328,7 @@ pub fn layout(name: &str) -> Option<&'static StructLayout> {
         "views" => &VIEW,
         "emitters" => &EMITTER,
         "bvh" => &BVH,
+        "atlas" => &ATLAS,
         "camera" => &CAMERA,
         _ => return None,
     })

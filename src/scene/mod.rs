@@ -18,10 +18,12 @@
 //! | [`environment`] | light from far away |
 //! | [`emitters`] | all that gives light, to choose from |
 //! | [`bvh`] | the triangles as rays find them |
+//! | [`atlas`] | the surfaces laid out flat |
 //! | [`features`] | what conditions can ask about a scene |
-//! | [`generate`] | scenes made from published numbers |
+//! | [`generate`] | scenes made by a command |
 //! | [`listing`] | what scenes a folder has |
 
+pub mod atlas;
 mod bounds;
 pub mod buffers;
 pub mod bvh;
@@ -52,6 +54,7 @@ use environment::Environment;
 use layout::{Instance, Light, Material, Triangle, Vertex, VertexExtra, View};
 use std::fmt;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
 
 /// How far from the origin a scene may reach in metres, lights and cameras with it: f32 holds the squares of distances.
 pub const FARTHEST: f32 = 1e18;
@@ -66,7 +69,7 @@ pub struct Scene {
     pub vertices: Vec<Vertex>,
     /// As many as vertices, or none where no vertex needs any.
     pub vertex_extras: Vec<VertexExtra>,
-    /// Those that some motion moves come last.
+    /// Those of an instance follow each other; those that some motion moves come last.
     pub triangles: Vec<Triangle>,
     /// How many triangles come before those that move.
     pub still_triangles: usize,
@@ -83,6 +86,8 @@ pub struct Scene {
     /// Of all triangles, in the world, at all times.
     pub bounds: Bounds,
     pub motion: motion::Motion,
+    /// Made when [`Scene::atlas`] is first asked for.
+    pub atlas: OnceLock<Arc<atlas::Atlas>>,
     /// What the files have and the scene doesn't.
     pub lacks: Vec<Lack>,
 }

@@ -23,6 +23,7 @@ pub fn render<const N: usize>(
     let folder = tempfile::tempdir().expect("a folder for the pictures");
     let file = |output: &str| folder.path().join(format!("{output}.exr"));
     let mut command = Command::new(env!("CARGO_BIN_EXE_voxgi"));
+    command.env("VOXGI_CACHE", env!("CARGO_TARGET_TMPDIR"));
     command.arg("render").arg(scene).args(["-p", pipeline, "--size", &format!("{SIZE}x{SIZE}")]);
     command.arg("--library").arg(shipped("tests/library-technique")).args(options.split_whitespace());
     for output in outputs {

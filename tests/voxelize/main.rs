@@ -2,6 +2,7 @@
 //! integers, on random triangles, hard cases and scans, and against properties that need no oracle. Every oracle is
 //! also made wrong on purpose, which must show.
 
+mod atlas;
 mod crowds;
 #[path = "../support/glb.rs"]
 mod glb;
@@ -11,9 +12,11 @@ mod lattice;
 mod meshes;
 mod model;
 mod oracle;
+mod payloads;
 mod properties;
 mod random;
 mod scans;
+mod solid;
 mod sums;
 #[path = "../support/scenes.rs"]
 mod support;

@@ -1,4 +1,4 @@
-//! Writes binary glTF files of flat-shaded quadrilaterals.
+//! Writes binary glTF files of meshes: flat-shaded quadrilaterals, or vertices with their normals and indices.
 
 use glam::{DVec3, Vec3};
 use gltf::json::accessor::{Accessor, ComponentType, GenericComponentType, Type};
@@ -15,6 +15,13 @@ pub struct Document {
     binary: Vec<u8>,
 }
 
+/// A vertex: where it is, and its normal, of unit length.
+#[derive(Clone, Copy, Debug)]
+pub struct Corner {
+    pub position: Vec3,
+    pub normal: Vec3,
+}
+
 impl Document {
     pub fn material(&mut self, material: Material) -> Index<Material> {
         self.root.push(material)
@@ -27,19 +34,45 @@ impl Document {
             .iter()
             .flat_map(|[a, b, c, d]| [(c - a).cross(d - b).normalize_or_zero().as_vec3(); 4])
             .collect();
-        let indices: Vec<u16> = (0..quads.len() as u16)
+        let indices: Vec<u8> = (0..quads.len() as u16)
             .flat_map(|quad| [0, 1, 2, 0, 2, 3].map(|corner| quad * 4 + corner))
+            .flat_map(u16::to_le_bytes)
             .collect();
+        self.mesh(name, &corners, &normals, (&indices, ComponentType::U16), material);
+    }
+
+    /// Adds a node with a mesh of triangles, 24 bytes a vertex. Each index is below the number of vertices.
+    pub fn triangles(
+        &mut self,
+        name: &str,
+        vertices: &[Corner],
+        triangles: &[[u32; 3]],
+        material: Index<Material>,
+    ) {
+        let positions: Vec<Vec3> = vertices.iter().map(|vertex| vertex.position).collect();
+        let normals: Vec<Vec3> = vertices.iter().map(|vertex| vertex.normal).collect();
+        let indices: Vec<u8> = triangles.iter().flatten().flat_map(|index| index.to_le_bytes()).collect();
+        self.mesh(name, &positions, &normals, (&indices, ComponentType::U32), material);
+    }
+
+    /// `indices`: three for each triangle, as bytes of integers of this type.
+    fn mesh(
+        &mut self,
+        name: &str,
+        corners: &[Vec3],
+        normals: &[Vec3],
+        (indices, kind): (&[u8], ComponentType),
+        material: Index<Material>,
+    ) {
         let low = corners.iter().copied().reduce(Vec3::min).unwrap_or_default();
         let high = corners.iter().copied().reduce(Vec3::max).unwrap_or_default();
         let positions =
-            self.accessor(bytemuck::cast_slice(&corners), corners.len(), Type::Vec3, ComponentType::F32);
+            self.accessor(bytemuck::cast_slice(corners), corners.len(), Type::Vec3, ComponentType::F32);
         self.root.accessors[positions.value()].min = Some(json::Value::from(low.to_array().to_vec()));
         self.root.accessors[positions.value()].max = Some(json::Value::from(high.to_array().to_vec()));
         let normals =
-            self.accessor(bytemuck::cast_slice(&normals), normals.len(), Type::Vec3, ComponentType::F32);
-        let bytes: Vec<u8> = indices.iter().flat_map(|index| index.to_le_bytes()).collect();
-        let indices = self.accessor(&bytes, indices.len(), Type::Scalar, ComponentType::U16);
+            self.accessor(bytemuck::cast_slice(normals), normals.len(), Type::Vec3, ComponentType::F32);
+        let indices = self.accessor(indices, indices.len() / kind.size(), Type::Scalar, kind);
         let primitive = Primitive {
             attributes: BTreeMap::from([
                 (Valid(Semantic::Positions), positions),

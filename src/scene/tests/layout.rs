@@ -39,7 +39,12 @@ fn tables_are_what_wgsl_lays_out() {
     for name in buffers::NAMES.iter().chain(&["camera"]) {
         let table = layout(name).unwrap();
         let Some((_, ty)) = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(table.name)) else {
-            let lists = [("texels", "u32", 4, 0), ("environment", "vec4f", 16, 0), ("bvh", "vec4u", 16, 0)];
+            let lists = [
+                ("texels", "u32", 4, 0),
+                ("environment", "vec4f", 16, 0),
+                ("bvh", "vec4u", 16, 0),
+                ("atlas", "vec2u", 8, 0),
+            ];
             assert!(lists.contains(&(*name, table.name, table.stride, table.fields.len())), "{name}");
             continue;
         };

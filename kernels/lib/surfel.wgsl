@@ -1,0 +1,10 @@
+// The surface in a voxel, as payloads give it.
+
+struct Surfel {
+    filled: bool,
+    albedo: vec3f,
+    /// Mean of the fragments' unit normals: shorter the less they agree, zero for two opposite faces.
+    normal: vec3f,
+    /// World space, metres; no further from the surface than half the voxel's diagonal.
+    position: vec3f,
+}

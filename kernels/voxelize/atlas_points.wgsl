@@ -1,0 +1,96 @@
+// Puts the point of the surface that each texel of the atlas stands for into its voxel: second pass of the atlas
+// voxelizer (T, chapter 3, where the points are drawn).
+//
+// A point is where the texel's centre lies in the triangle whose corners are snapped as in lib/overlap, so it lies in a
+// voxel that the triangle meets. Where rounding could have moved it over a face, integers decide whether the triangle
+// meets that voxel; if not, the point is left out. On a face exactly it is in the voxel above.
+// Reads per texel its number; of those with a triangle 3 corners (ca. 250 B) and what the payload wants.
+
+import lib/atlas;
+import lib/grid;
+import lib/overlap;
+import lib/scene;
+import role/payload;
+
+/// Bounds what single floats lose in a point's place, in parts of the largest coordinate: 16 roundings.
+const PLACE_DOUBT: f32 = 1.9073486e-6;
+
+/// Numbers of triangles and 1; 0 where there is none.
+var triangle_map: texture_2d<u32>;
+
+/// Weights of a triangle's corners in the point of it that is at `place`, or next to it.
+fn atlas_weights(triangle: u32, place: vec2f) -> vec3f {
+    let a = atlas_corner(triangle, 0u);
+    let u = atlas_corner(triangle, 1u) - a;
+    let v = atlas_corner(triangle, 2u) - a;
+    let p = place - a;
+    let area = u.x * v.y - u.y * v.x;
+    let b = clamp((p.x * v.y - p.y * v.x) / max(area, 1e-30), 0.0, 1.0);
+    let c = clamp((u.x * p.y - u.y * p.x) / max(area, 1e-30), 0.0, 1.0 - b);
+    return vec3f(1.0 - b - c, b, c);
+}
+
+/// Whether a triangle, its corners in units, meets the voxel; exact.
+fn triangle_meets(corners: array<vec3i, 3>, voxel: vec3i) -> bool {
+    var p: array<vec3i, 3>;
+    for (var i = 0u; i < 3u; i++) {
+        p[i] = corners[i] - voxel * UNITS;
+    }
+    let low = voxel_of(min(p[0], min(p[1], p[2])));
+    let high = voxel_of(max(p[0], max(p[1], p[2])));
+    if any(low > vec3i(0)) || any(high < vec3i(0)) {
+        return false;
+    }
+    let facing = turned(facing_of(p));
+    for (var i = 0u; i < 3u; i++) {
+        p[i] = turn(p[i], facing.axis);
+    }
+    let overlap = overlap_of(p, facing, false, vec3i(0));
+    if !inside(overlap, overlap.xy, 0u, 1u, 2u, vec2i(0)) {
+        return false;
+    }
+    let range = column_range(overlap, vec2i(0));
+    return range.x <= 0 && range.y >= 0 && fills(overlap, range, vec3i(0));
+}
+
+/// Adds the point of `triangle` at a place of the atlas, if it lies in the grid.
+fn add_point(triangle: u32, place: vec2f) {
+    let t = triangles[triangle];
+    let corners = array(
+        snapped(to_grid(corner_position(t.a, t.instance))),
+        snapped(to_grid(corner_position(t.b, t.instance))),
+        snapped(to_grid(corner_position(t.c, t.instance))),
+    );
+    // From the first corner's voxel on, so that little is lost.
+    let first = voxel_of(corners[0]);
+    var placed: array<vec3f, 3>;
+    var near: array<vec3f, 3>;
+    for (var i = 0u; i < 3u; i++) {
+        placed[i] = vec3f(corners[i]) / f32(UNITS);
+        near[i] = vec3f(corners[i] - first * UNITS) / f32(UNITS);
+    }
+    let weights = atlas_weights(triangle, place);
+    let point = weights.x * near[0] + weights.y * near[1] + weights.z * near[2];
+    let voxel = first + vec3i(floor(point));
+    if any(voxel < vec3i(0)) || any(voxel >= vec3i(values.grid_size)) {
+        return;
+    }
+    let largest = max(abs(near[0]), max(abs(near[1]), abs(near[2])));
+    let doubt = PLACE_DOUBT * (1.0 + max(largest.x, max(largest.y, largest.z)));
+    let doubtful = any(abs(fract(point) - 0.5) > vec3f(0.5 - doubt));
+    if !doubtful || triangle_meets(corners, voxel) {
+        add_fragment(surface_of(triangle, placed), vec3u(voxel));
+    }
+}
+
+@compute @workgroup_size(8, 8)
+fn main(@builtin(global_invocation_id) id: vec3u) {
+    let size = textureDimensions(triangle_map);
+    if any(id.xy >= size) {
+        return;
+    }
+    let number = textureLoad(triangle_map, id.xy, 0).x;
+    if number > 0u {
+        add_point(number - 1u, (vec2f(id.xy) + 0.5) / vec2f(size));
+    }
+}
