@@ -3,10 +3,22 @@
 
 import lib/columns;
 
+struct CutoffKnobs {
+    separability: u32,
+    /// Voxels².
+    cutoff: f32,
+}
+
+var<uniform> knobs: CutoffKnobs;
+
 /// Area in the plane that its columns cross, in voxels²; of what lies outside the grid no more than its bounds there.
 fn projected_area(placed: Placed) -> f32 {
     let u = vec2f(placed.corners[1].xy - placed.corners[0].xy) / f32(UNITS);
     let v = vec2f(placed.corners[2].xy - placed.corners[0].xy) / f32(UNITS);
     let bounds = vec2f(placed.size.xy + 1);
     return min(0.5 * abs(u.x * v.y - u.y * v.x), bounds.x * bounds.y);
+}
+
+fn is_large(placed: Placed) -> bool {
+    return projected_area(placed) > knobs.cutoff;
 }

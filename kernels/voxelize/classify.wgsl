@@ -5,20 +5,9 @@
 import lib/cutoff;
 import lib/dispatch;
 import lib/draw_large;
+import lib/geometry;
 import lib/groups;
 
-struct Knobs {
-    cutoff: f32,
-}
-
-var<uniform> knobs: Knobs;
-
-struct Geometry {
-    first: u32,
-    triangles: u32,
-}
-
-var<uniform> geometry: Geometry;
 /// Numbers of triangles; there is room for all.
 var<storage, read_write> small: array<u32>;
 var<storage, read_write> small_count: array<atomic<u32>, 1>;
@@ -28,7 +17,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workg
     let triangle = linear_index(id, workgroups, 64u);
     if triangle < geometry.triangles {
         let placed = placed_of(geometry.first + triangle);
-        if placed.meets && projected_area(placed) > knobs.cutoff {
+        if placed.meets && is_large(placed) {
             draw_large(placed.triangle);
         } else if placed.meets {
             let place = atomicAdd(&small_count[0], 1u);

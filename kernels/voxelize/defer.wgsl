@@ -6,27 +6,14 @@
 import lib/cutoff;
 import lib/dispatch;
 import lib/draw_large;
-
-struct Knobs {
-    separability: u32,
-    cutoff: f32,
-}
-
-var<uniform> knobs: Knobs;
-
-struct Geometry {
-    first: u32,
-    triangles: u32,
-}
-
-var<uniform> geometry: Geometry;
+import lib/geometry;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
     let triangle = linear_index(id, workgroups, 64u);
     if triangle < geometry.triangles {
         let placed = placed_of(geometry.first + triangle);
-        if placed.meets && projected_area(placed) > knobs.cutoff {
+        if placed.meets && is_large(placed) {
             draw_large(placed.triangle);
         } else if placed.meets {
             fill_all(placed, knobs.separability);

@@ -8,21 +8,9 @@
 import lib/chunks;
 import lib/cutoff;
 import lib/dispatch;
+import lib/geometry;
 import lib/groups;
 
-struct Knobs {
-    separability: u32,
-    cutoff: f32,
-}
-
-var<uniform> knobs: Knobs;
-
-struct Geometry {
-    first: u32,
-    triangles: u32,
-}
-
-var<uniform> geometry: Geometry;
 /// A triangle and the number of its chunk.
 var<storage, read_write> queue: array<vec2u>;
 var<storage, read_write> queue_count: array<atomic<u32>, 1>;
@@ -37,7 +25,8 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workg
     if !placed.meets {
         return;
     }
-    if projected_area(placed) > knobs.cutoff {
+    // A full queue is left alone: however many triangles there are, the count never begins anew.
+    if is_large(placed) && atomicLoad(&queue_count[0]) < arrayLength(&queue) {
         let chunks = chunks_of(placed);
         let place = atomicAdd(&queue_count[0], chunks);
         let room = arrayLength(&queue) - min(place, arrayLength(&queue));

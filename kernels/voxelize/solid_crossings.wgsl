@@ -8,20 +8,15 @@
 // A thread for each triangle reads 3 corners, and adds to a word for each row that it crosses.
 
 import lib/dispatch;
+import lib/geometry;
 import lib/grid;
 import lib/overlap;
 import lib/scene;
 
-struct Geometry {
-    first: u32,
-    triangles: u32,
-}
-
-var<uniform> geometry: Geometry;
 var<storage, read_write> crossings: array<atomic<u32>>;
 
-/// The row's middle (half a unit's steps are none: centres are whole units) against an edge that has its triangle on the
-/// left where `facing` is 1.
+/// Whether a row's middle line lies on the triangle's side of an edge, which has the triangle on its left where `facing`
+/// is 1, on its right where it is -1.
 fn is_left(begin: vec2i, end: vec2i, facing: i32, p: vec2i) -> bool {
     let d = facing * (end - begin);
     let to = p - begin;

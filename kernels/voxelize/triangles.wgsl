@@ -5,19 +5,13 @@
 
 import lib/columns;
 import lib/dispatch;
+import lib/geometry;
 
 struct Knobs {
     separability: u32,
 }
 
 var<uniform> knobs: Knobs;
-
-struct Geometry {
-    first: u32,
-    triangles: u32,
-}
-
-var<uniform> geometry: Geometry;
 
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {

@@ -9,6 +9,7 @@ use crate::tune::estimate::Estimate;
 use crate::tune::{Doing, Least, Outcome, Tried, Tuning, tune};
 use crate::tuned::{Kept, Shelf};
 use clap::Args;
+use comfy_table::{CellAlignment, Table};
 use indicatif::ProgressBar;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -131,6 +132,16 @@ fn watch(bar: &mut Option<(String, ProgressBar)>, doing: &Doing) {
     }
 }
 
+/// A median with its interval; errors can be small.
+fn cell(estimate: &Estimate, digits: usize) -> String {
+    let Estimate { median, low, high } = estimate;
+    match (low < high, *median > 0.0 && *median < 1e-3) {
+        (true, _) => format!("{median:.digits$} ({low:.digits$} to {high:.digits$})"),
+        (false, true) => format!("{median:.2e}"),
+        (false, false) => format!("{median:.digits$}"),
+    }
+}
+
 /// For people: each value with its median and interval on each scene, and what was chosen.
 fn table(outcome: &Outcome, path: &Path) -> String {
     let mut text = String::new();
@@ -157,40 +168,27 @@ fn table(outcome: &Outcome, path: &Path) -> String {
         Some(unit) => format!("{knob} ({unit})"),
         None => knob.clone(),
     };
-    let lengths = outcome.tried.iter().map(|tried| value(&tried.value).chars().count());
-    let first = lengths.chain([name.chars().count()]).max().unwrap_or(0);
-    let cell = |estimate: &Estimate, digits: usize| {
-        let Estimate { median, low, high } = estimate;
-        match (low < high, *median > 0.0 && *median < 1e-3) {
-            (true, _) => format!("{median:.digits$} ({low:.digits$} to {high:.digits$})"),
-            (false, true) => format!("{median:.2e}"),
-            (false, false) => format!("{median:.digits$}"),
-        }
-    };
+    let several = outcome.scenes.len() > 1;
     let digits = if outcome.least == "time" { 3 } else { 5 };
     let cells = |tried: &Tried| -> Vec<String> {
         let scenes = tried.scenes.iter().map(|measured| cell(&measured.estimate, digits));
-        let together = (outcome.scenes.len() > 1).then(|| cell(&tried.ratio, 3));
-        scenes.chain(together).collect()
+        let together = several.then(|| cell(&tried.ratio, 3));
+        let chosen = if tried.value == outcome.chosen { "chosen" } else { "" };
+        let default = if tried.value == outcome.default { "default" } else { "" };
+        let marks = format!("{default} {chosen}").trim().to_owned();
+        [value(&tried.value)].into_iter().chain(scenes).chain(together).chain([marks]).collect()
     };
-    let rows: Vec<Vec<String>> = outcome.tried.iter().map(cells).collect();
     let titles = outcome.scenes.iter().map(|scene| format!("{scene}, {unit}"));
-    let titles: Vec<String> =
-        titles.chain((outcome.scenes.len() > 1).then(|| "mean ratio to the best".to_owned())).collect();
-    let width = |column: usize| {
-        let cells = rows.iter().filter_map(|row| row.get(column));
-        cells.chain(titles.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
-    };
-    let joined = |cells: &[String]| -> String {
-        cells.iter().enumerate().map(|(i, cell)| format!("  {cell:<width$}", width = width(i))).collect()
-    };
-    line(format_args!("\n{name:>first$}{}", joined(&titles)));
-    for (tried, cells) in outcome.tried.iter().zip(&rows) {
-        let chosen = if tried.value == outcome.chosen { "  chosen" } else { "" };
-        let default = if tried.value == outcome.default { "  default" } else { "" };
-        let marked = format!("{:>first$}{}{default}{chosen}", value(&tried.value), joined(cells));
-        line(format_args!("{}", marked.trim_end()));
+    let together = several.then(|| "mean ratio to the best".to_owned());
+    let mut table = Table::new();
+    table.load_style(comfy_table::presets::NOTHING);
+    table.set_header([name].into_iter().chain(titles).chain(together).chain([String::new()]));
+    outcome.tried.iter().for_each(|tried| _ = table.add_row(cells(tried)));
+    if let Some(values) = table.column_mut(0) {
+        values.set_cell_alignment(CellAlignment::Right);
     }
+    line(format_args!(""));
+    table.lines().for_each(|row| line(format_args!("{}", row.trim_end())));
     let [from, to] = &outcome.alike;
     if from != to {
         line(format_args!("\nfrom {} to {} it is as good: the middle is chosen", value(from), value(to)));

@@ -1,10 +1,11 @@
 //! What naga says about composed text, said about the author's files and in WGSL's own words.
 
-use super::compose::Composed;
+use super::compose::{Composed, Segment};
 use crate::problem::Problem;
 use naga::WithSpan;
 use naga::front::wgsl::ParseError;
 use naga::valid::{EntryPointError, FunctionError, GlobalUse, ValidationError};
+use std::collections::BTreeSet;
 use std::error::Error;
 
 /// A text that is not WGSL, or that uses names or types wrongly.
@@ -19,7 +20,21 @@ pub fn parse_error(composed: &Composed, error: &ParseError) -> Problem {
         problem = problem.at(&composed.start(), "in this kernel");
     }
     let notes: Vec<&str> = error.notes().collect();
-    if notes.is_empty() { problem } else { problem.help(notes.join("\n")) }
+    match parts_that_could(composed, error.message()) {
+        _ if !notes.is_empty() => problem.help(notes.join("\n")),
+        Some(help) => problem.help(help),
+        None => problem,
+    }
+}
+
+/// A name that is not there may be one that another part's module has.
+fn parts_that_could(composed: &Composed, message: &str) -> Option<String> {
+    let missing = message.contains("no definition in scope");
+    let role = |segment: &Segment| Some(format!("`role/{}` is `{}`", segment.role.as_ref()?, segment.kernel));
+    let roles: BTreeSet<String> = composed.segments.iter().filter_map(role).collect();
+    let roles: Vec<String> = roles.into_iter().collect();
+    (missing && !roles.is_empty())
+        .then(|| format!("another part's module may have it (`--part ROLE=PART`): here {}", roles.join(", ")))
 }
 
 /// A module that parses, but that breaks a rule of WGSL or needs what the device lacks. It points at the smallest

@@ -28,8 +28,11 @@ pub(super) fn modules(players: &[(&Player, ScopeId)], world: &mut World<'_>) -> 
             if let Root::Part { moving, order_dependent, .. } = &player.document.root
                 && name == player.role
             {
-                let names = moving.iter().map(|(from, to)| (from.value.clone(), to.value.clone()));
-                found.moving = names.collect();
+                for (from, to) in moving {
+                    world.is_resource(from, *scope);
+                    world.is_resource(to, *scope);
+                    found.moving.insert(from.value.clone(), to.value.clone());
+                }
                 found.order_dependent = order_dependent.as_ref().map(|reason| reason.value.clone());
             }
             if let Some(first) = modules.get(name) {
@@ -174,6 +177,19 @@ impl<'a> World<'a> {
             self.declare(scope, &name.value, Named::Resource(id.into()), &name.place);
         }
         scope
+    }
+
+    /// Reports a name that is no resource where it stands: a module's bindings are found by such names.
+    fn is_resource(&mut self, name: &Spanned<String>, scope: ScopeId) {
+        if matches!(self.lookup(scope, &name.value), Some(Named::Resource(_))) {
+            return;
+        }
+        let known = super::visible(&self.scopes, scope).into_iter();
+        let known = known.filter(|(_, named)| matches!(named, Named::Resource(_))).map(|(name, _)| name);
+        let message = format!("no resource `{}` is exported, so that the part's module sees it", name.value);
+        let problem = Problem::input("unknown-resource", message).at(&name.place, "named here");
+        let problem = problem.suggest(&name.value, known);
+        self.report(problem);
     }
 
     /// Makes what a part exports visible in the pipeline.

@@ -1,9 +1,11 @@
 //! What the engine may leave out, keep, reorder or share never shows in a picture, in no bit of it.
 
 use crate::bench::{Job, differences, gpu, open, scene, shipped};
+use std::sync::Arc;
 use voxgi::device::LimitSet;
 use voxgi::frame::Poison;
 use voxgi::problem::Kind;
+use voxgi::scene::atlas::Atlas;
 
 /// Small enough for a software driver; everything else is as shipped.
 fn small<'a>(scene: &'a voxgi::scene::Scene, pipeline: &str) -> Job<'a> {
@@ -30,6 +32,54 @@ fn shipped_pipelines_keep_their_bits(scene_name: &str) {
         }
     }
     assert!(compared >= 7);
+}
+
+/// Ways to voxelize, and what voxels hold: all that fill the same voxels. Running averages say that they depend on order.
+const PARTS: [(&str, &str); 9] = [
+    ("voxelize", "voxelize/fragments"),
+    ("voxelize", "voxelize/hybrid"),
+    ("voxelize", "voxelize/classified"),
+    ("voxelize", "voxelize/queue"),
+    ("voxelize", "voxelize/atlas"),
+    ("voxelize", "voxelize/solid"),
+    ("payload", "payload/maximum"),
+    ("grid", "grid/box"),
+    ("grid", "grid/window"),
+];
+
+/// What parts leave from stage to stage, lists and indirect arguments among it, is never read before it is written.
+#[test]
+fn parts_keep_their_bits_where_things_move() {
+    let scene = crate::bench::moving_scene();
+    // Unwrapped here rather than in the user's cache.
+    assert!(scene.atlas.set(Arc::new(Atlas::of(&scene, None))).is_ok());
+    for (role, part) in PARTS {
+        // The inside of meshes has no attributes.
+        let pipeline = if part == "voxelize/solid" { "cubes" } else { "cones" };
+        let mut job = small(&scene, pipeline).set_where_known("bounces", "1");
+        job.request.parts.push((role.to_owned(), part.to_owned()));
+        let job = job.set_where_known("cutoff", "8");
+        let plain = job.outputs(gpu(), 1);
+        assert!(plain.values().any(|bytes| bytes.iter().any(|b| *b != 0)), "{part} draws nothing");
+        for (way, job) in job.ways() {
+            let found = differences(&plain, &job.outputs(gpu(), 2));
+            assert!(found.is_empty(), "{part}, {way}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn what_depends_on_the_order_of_threads_says_so() {
+    let scene = scene("cornell-point");
+    let reasons = |payload: &str| {
+        let mut job = small(&scene, "cones");
+        job.request.parts.push(("payload".to_owned(), payload.to_owned()));
+        let prepared = job.prepare().expect("a graph");
+        let stages = prepared.graph.stages.iter();
+        stages.filter(|s| s.order_dependent.is_some()).map(|s| s.path.clone()).collect::<Vec<_>>()
+    };
+    assert_eq!(reasons("payload/average"), ["voxelize/still", "voxelize/moving"]);
+    assert!(reasons("payload/sums").is_empty() && reasons("payload/maximum").is_empty());
 }
 
 #[test]

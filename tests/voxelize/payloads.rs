@@ -64,7 +64,7 @@ fn sums_are_means() {
     }
 }
 
-/// Rounded at each step, in any order. Cut instead of rounded, they would be too dark by a half for each step's share.
+/// Rounded at each step, in any order.
 #[test]
 fn running_averages_are_close_to_means() {
     let (_, _, colors) = sheets();
@@ -75,8 +75,9 @@ fn running_averages_are_close_to_means() {
         let bias = found.iter().flatten().zip(mean.iter().cycle()).map(|(a, b)| a - b).sum::<f64>()
             / (3 * found.len()) as f64;
         println!("{}: off by {off:.2}, in the mean {bias:.3} of 255", method);
-        // A step's rounding is half a byte at most, and later steps weigh it less.
-        assert!(off < SHEETS as f64 / 4.0 && bias.abs() < 5.0, "{off} {bias}");
+        // What is nearer to the average than half its count is lost, to both sides alike; cut, the mean of so many would
+        // be too dark by 25 of 255.
+        assert!(off < 8.0 && bias.abs() < 5.0, "{off} {bias}");
         assert!(off > 0.001, "bytes can't hold the mean");
     }
 }

@@ -66,6 +66,16 @@ fn wgsl_errors_point_into_the_import_where_they_happened() {
     assert_eq!(label(&problem, 1), at("a.wgsl", 2, 4, "area"));
 }
 
+/// What a role's module lacks, another part may have.
+#[test]
+fn what_a_module_lacks_may_be_in_another_parts() {
+    let main = "import role/storage;\nfn m() -> f32 { return brightness(); }";
+    let problem = problem(&[("main", main), ("dense", "fn darkness() -> f32 { return 0.0; }")]);
+    assert_eq!((problem.code, label(&problem, 0)), ("wgsl", at("main.wgsl", 2, 24, "brightness")));
+    let help = problem.help.unwrap_or_default();
+    assert!(help.contains("--part") && help.ends_with("here `role/storage` is `dense`"), "{help}");
+}
+
 #[test]
 fn wgsl_errors_of_all_sorts_have_a_place() {
     let wgsl = |text| {

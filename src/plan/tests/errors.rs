@@ -290,3 +290,52 @@ fn progress() {
         errs(&format!("{knobs},\nprogress: {progress}"), code);
     }
 }
+
+/// A pipeline whose only part, in the role `fill`, is this.
+#[track_caller]
+fn errs_in_part(part: &str, code: &str) -> Problem {
+    errs_with(
+        r#"parts: {"fill": "fill/one"}, stages: [Part(role: "fill")]"#,
+        &[("fill/one", part)],
+        &setup(),
+        code,
+    )
+}
+
+/// What a module has in stages over what moves must be there, and so must what it has in others.
+#[test]
+fn modules_see_what_is_exported() {
+    let part = |moving: &str| {
+        format!(
+            r#"Part(about: "", role: "fill", module: "fill", moving: {{{moving}}}, exports: ["cells", "moving_cells"],
+            resources: {{"cells": Buffer(count: 1, start: Fill(0)), "moving_cells": Buffer(count: 1, start: Fill(0)),
+            "own": Buffer(count: 1, start: Fill(0))}})"#
+        )
+    };
+    let problem = errs_in_part(&part(r#""«cell»": "moving_cells""#), "unknown-resource");
+    assert_eq!(problem.help.as_deref(), Some("did you mean `cells`?"));
+    errs_in_part(&part(r#""cells": "«moved_cells»""#), "unknown-resource");
+    errs_in_part(&part(r#""cells": "«own»""#), "unknown-resource");
+    let pipeline = r#"parts: {"fill": "fill/one"}, stages: [Part(role: "fill")]"#;
+    let plan = plan_with(pipeline, &[("fill/one", &part(r#""cells": "moving_cells""#))], &setup());
+    assert_eq!(plan.modules["fill"].moving["cells"], "moving_cells");
+}
+
+#[test]
+fn a_module_has_a_name_of_its_own() {
+    let one = r#"Part(about: "", role: "one", module: "one", modules: {"two": "«elsewhere»"})"#;
+    let two = r#"Part(about: "", role: "two", module: "two")"#;
+    let pipeline = r#"parts: {"two": "two", "one": "one"}"#;
+    let parts = [("two", two), ("one", one)];
+    errs_with(pipeline, &parts, &setup(), "duplicate-module");
+    let plan = plan_with(
+        pipeline,
+        &[
+            ("two", two),
+            ("one", &one.replace(": \"«elsewhere»\"", ": \"elsewhere\"").replace("\"two\": ", "\"third\": ")),
+        ],
+        &setup(),
+    );
+    assert_eq!(plan.modules["third"].kernel, "elsewhere");
+    assert!(plan.modules["one"].order_dependent.is_none());
+}
