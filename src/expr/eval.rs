@@ -146,6 +146,7 @@ impl Eval<'_> {
             "ceil" => |x| x[0].ceil(),
             // Not f64::clamp, which panics where the bounds are in the wrong order.
             "clamp" => |x| x[0].max(x[1]).min(x[2]),
+            "cos_degrees" => |x| turned(x[0], 1.0),
             "exp2" => |x| x[0].exp2(),
             "floor" => |x| x[0].floor(),
             "log2" => |x| x[0].log2(),
@@ -153,6 +154,7 @@ impl Eval<'_> {
             "min" => |x| x.iter().copied().fold(f64::INFINITY, f64::min),
             "pow" => |x| x[0].powf(x[1]),
             "round" => |x| x[0].round_ties_even(),
+            "sin_degrees" => |x| turned(x[0], 0.0),
             "sqrt" => |x| x[0].sqrt(),
             "vec2" => return self.vector(tree, arguments, 2),
             "vec3" => return self.vector(tree, arguments, 3),
@@ -286,5 +288,18 @@ impl Eval<'_> {
             (None, [number]) => Value::Number(*number),
             _ => Value::Vector(results),
         })
+    }
+}
+
+/// The sine of an angle in degrees and as many quarter turns more. Whole quarters are taken off first, so that
+/// multiples of 90 give -1, 0 or 1 and nothing beside.
+fn turned(degrees: f64, quarters: f64) -> f64 {
+    let quarter = (degrees / 90.0).round();
+    let rest = (degrees - 90.0 * quarter).to_radians();
+    match (quarter + quarters).rem_euclid(4.0) as u8 {
+        0 => rest.sin(),
+        1 => rest.cos(),
+        2 => -rest.sin(),
+        _ => -rest.cos(),
     }
 }

@@ -11,6 +11,7 @@
 //! !  -   * / %   + -   < <= > >=   == !=   &&   ||     from tight to loose; `%` has the sign of its left side
 //! if(condition, then, else)                            only the branch that is chosen is computed
 //! min max clamp abs floor ceil round sqrt log2 exp2 pow   component by component
+//! sin_degrees cos_degrees                              the same; exact where the angle is a multiple of 90
 //! vec2 vec3 vec4   dot length max_of min_of            vectors from numbers and vectors; numbers from vectors
 //! ```
 //!

@@ -52,10 +52,11 @@ const fn function(name: &'static str, fewest: usize, most: usize) -> Function {
     Function { name, fewest, most }
 }
 
-const FUNCTIONS: [Function; 18] = [
+const FUNCTIONS: [Function; 20] = [
     function("abs", 1, 1),
     function("ceil", 1, 1),
     function("clamp", 3, 3),
+    function("cos_degrees", 1, 1),
     function("dot", 2, 2),
     function("exp2", 1, 1),
     function("floor", 1, 1),
@@ -67,6 +68,7 @@ const FUNCTIONS: [Function; 18] = [
     function("min_of", 1, 1),
     function("pow", 2, 2),
     function("round", 1, 1),
+    function("sin_degrees", 1, 1),
     function("sqrt", 1, 1),
     function("vec2", 1, 2),
     function("vec3", 1, 3),

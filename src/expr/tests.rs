@@ -61,6 +61,11 @@ fn computes() {
         ("dot(trace.origin, vec3(1)) + length(vec2(3, 4))", 11.0),
         ("max_of(trace.origin) - min_of(trace.origin)", 2.0),
         ("vec4(trace.origin, 9).w", 9.0),
+        ("sin_degrees(90) - cos_degrees(-180) + sin_degrees(-90) + cos_degrees(360)", 2.0),
+        (
+            "abs(sin_degrees(180)) + abs(cos_degrees(90)) + abs(cos_degrees(-450)) + abs(sin_degrees(720))",
+            0.0,
+        ),
     ] {
         assert_eq!(number(text), expected, "{text}");
     }
@@ -75,6 +80,15 @@ fn computes() {
     }
     assert_eq!(eval("vec2(1, 2) * 2 + vec2(1)"), Ok(Value::Vector(vec![3.0, 5.0])));
     assert_eq!(eval("-trace.origin"), Ok(Value::Vector(vec![-1.0, -2.0, -3.0])));
+}
+
+#[test]
+fn angles_are_degrees() {
+    for degrees in (-1000..1000).map(|i| f64::from(i) * 0.37) {
+        let off = |text: &str, expected: f64| (number(&format!("{text}({degrees:?})")) - expected).abs();
+        assert!(off("sin_degrees", degrees.to_radians().sin()) < 1e-14, "{degrees}");
+        assert!(off("cos_degrees", degrees.to_radians().cos()) < 1e-14, "{degrees}");
+    }
 }
 
 #[test]
