@@ -35,7 +35,9 @@ struct ConeKnobs {
 /// A cone on its way. Lengths in voxels, positions in the grid.
 struct Cone {
     origin: vec3f,
+    /// In the world, and along the grid's axes.
     direction: vec3f,
+    along: vec3f,
     /// Height above the plane of the origin: `lift + rise · distance`.
     lift: f32,
     rise: f32,
@@ -59,27 +61,30 @@ const LEAST_RISE: f32 = 0.25;
 const LEAST_TRANSMITTANCE: f32 = 0.001;
 const MOST_STEPS: u32 = 512u;
 
-/// Distance along `direction` to where the grid ends.
-fn grid_exit(origin: vec3f, direction: vec3f) -> f32 {
-    let forward = direction > vec3f(0.0);
+/// Distance `along` a direction to where the grid ends.
+fn grid_exit(origin: vec3f, along: vec3f) -> f32 {
+    let forward = along > vec3f(0.0);
     let wall = select(vec3f(0.0), vec3f(values.grid_size), forward);
-    let slope = select(min(direction, vec3f(-1e-6)), max(direction, vec3f(1e-6)), forward);
+    let slope = select(min(along, vec3f(-1e-6)), max(along, vec3f(1e-6)), forward);
     let exit = (wall - origin) / slope;
     return max(min(exit.x, min(exit.y, exit.z)), 0.0);
 }
 
-/// A cone from a point (world) of a surface with unit normal `n` on the side where the cone starts.
+/// A cone from a point of a surface with unit normal `n` on the side where the cone starts, all in the world.
 fn cone_begin(position: vec3f, n: vec3f, direction: vec3f) -> Cone {
-    let lift = LIFT * norm_1(n);
-    let origin = to_grid(position) + n * lift;
+    let up = direction_to_grid(n);
+    let along = direction_to_grid(direction);
+    let lift = LIFT * norm_1(up);
+    let origin = to_grid(position) + up * lift;
     return Cone(
         origin,
         direction,
+        along,
         lift,
         max(dot(n, direction), LEAST_RISE),
-        CLEARANCE * norm_1(n),
+        CLEARANCE * norm_1(up),
         0.5,
-        grid_exit(origin, direction),
+        grid_exit(origin, along),
         0.0,
         0.0,
         0.0,
@@ -106,7 +111,7 @@ fn cone_advance(cone: ptr<function, Cone>, knobs_: ConeKnobs) -> bool {
 
 /// World position of the step's sample.
 fn cone_position(cone: Cone) -> vec3f {
-    return from_grid(cone.origin + cone.direction * cone.distance);
+    return from_grid(cone.origin + cone.along * cone.distance);
 }
 
 /// How much of a step a stored opacity stops: `1 - (1 - opacity)^s`, s = the step over the length that the opacity

@@ -16,7 +16,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let ray = pixel_ray(id.xy, size);
-    var walk = walk_begin(to_grid(ray.origin), ray.direction, vec3i(values.grid_size));
+    var walk = walk_begin(to_grid(ray.origin), direction_to_grid(ray.direction), vec3i(values.grid_size));
     let most = values.grid_size.x + values.grid_size.y + values.grid_size.z;
     var seen = 0.0;
     for (var k = 0u; k < most && walk.inside; k++) {

@@ -37,7 +37,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     let side = vec3i((values.grid_size + (1u << level) - 1u) >> vec3u(level));
     let scale = 1.0 / f32(1u << level);
     let ray = pixel_ray(id.xy, size);
-    var walk = walk_begin(to_grid(ray.origin) * scale, ray.direction, side);
+    var walk = walk_begin(to_grid(ray.origin) * scale, direction_to_grid(ray.direction), side);
     var seen = vec4f(0.0);
     for (var k = 0; k < side.x + side.y + side.z && walk.inside && seen.a < 0.999; k++) {
         seen += (1.0 - seen.a) * stored_voxel(walk.cube, i32(level), ray.direction);

@@ -1,26 +1,8 @@
-// The voxel grid: a box of cubes, aligned with the axes of the world.
+// The voxel grid: a box of cubes. How it lies in the world is up to the role `grid`, whose module has `values`,
+// `to_grid`, `from_grid` and `direction_to_grid`. What is in voxels is along the grid's axes; all else, normals and
+// directions of light among it, is along the world's.
 
-struct GridValues {
-    /// Corner with the smallest coordinates, metres.
-    grid_min: vec3f,
-    /// Edge of a voxel, metres.
-    voxel_size: f32,
-    /// Voxels along each axis.
-    grid_size: vec3u,
-    /// Largest side of the scene, in voxels.
-    scene_side: f32,
-}
-
-var<uniform> values: GridValues;
-
-/// World to voxels: voxel i covers [i, i + 1).
-fn to_grid(position: vec3f) -> vec3f {
-    return (position - values.grid_min) / values.voxel_size;
-}
-
-fn from_grid(position: vec3f) -> vec3f {
-    return values.grid_min + position * values.voxel_size;
-}
+import role/grid;
 
 /// Number of a voxel in a dense buffer: x fastest.
 fn voxel_number(voxel: vec3u) -> u32 {

@@ -35,7 +35,7 @@ fn shipped_pipelines_keep_their_bits(scene_name: &str) {
 }
 
 /// Ways to voxelize, and what voxels hold: all that fill the same voxels. Running averages say that they depend on order.
-const PARTS: [(&str, &str); 9] = [
+const PARTS: [(&str, &str); 10] = [
     ("voxelize", "voxelize/fragments"),
     ("voxelize", "voxelize/hybrid"),
     ("voxelize", "voxelize/classified"),
@@ -45,6 +45,7 @@ const PARTS: [(&str, &str); 9] = [
     ("payload", "payload/maximum"),
     ("grid", "grid/box"),
     ("grid", "grid/window"),
+    ("grid", "grid/turned"),
 ];
 
 /// What parts leave from stage to stage, lists and indirect arguments among it, is never read before it is written.
@@ -58,7 +59,7 @@ fn parts_keep_their_bits_where_things_move() {
         let pipeline = if part == "voxelize/solid" { "cubes" } else { "cones" };
         let mut job = small(&scene, pipeline).set_where_known("bounces", "1");
         job.request.parts.push((role.to_owned(), part.to_owned()));
-        let job = job.set_where_known("cutoff", "8");
+        let job = job.set_where_known("cutoff", "8").set_where_known("yaw", "30.0");
         let plain = job.outputs(gpu(), 1);
         assert!(plain.values().any(|bytes| bytes.iter().any(|b| *b != 0)), "{part} draws nothing");
         for (way, job) in job.ways() {

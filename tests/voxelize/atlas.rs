@@ -19,7 +19,7 @@ fn shipped(path: &str) -> PathBuf {
 }
 
 /// A scene, unwrapped here rather than in the user's cache.
-fn unwrapped(scene: Scene) -> Scene {
+pub fn unwrapped(scene: Scene) -> Scene {
     assert!(scene.atlas.set(Arc::new(Atlas::of(&scene, None))).is_ok(), "it is not made yet");
     scene
 }
@@ -29,11 +29,16 @@ fn loaded(path: &Path) -> Scene {
 }
 
 /// For each voxel how many points the atlas voxelizer puts there.
-fn through_atlas(scene: &Scene, grid: &Grid, texels_per_voxel: f64) -> Vec<u32> {
+pub fn through_atlas(scene: &Scene, grid: &Grid, texels_per_voxel: f64) -> Vec<u32> {
+    through(scene, grid, "payload/sums", texels_per_voxel)
+}
+
+/// The same as a payload counts them.
+pub fn through(scene: &Scene, grid: &Grid, payload: &str, texels_per_voxel: f64) -> Vec<u32> {
     let mut sets: Vec<_> =
         grid.knobs.iter().map(|(knob, value)| ((*knob).to_owned(), value.clone())).collect();
     sets.push(("texels_per_voxel".to_owned(), format!("{texels_per_voxel:?}")));
-    let parts = [("grid", grid.part), ("payload", "payload/sums"), ("voxelize", "voxelize/atlas")];
+    let parts = [("grid", grid.part), ("payload", payload), ("voxelize", "voxelize/atlas")];
     let parts = parts.map(|(role, part)| (role.to_owned(), part.to_owned())).to_vec();
     let request =
         Request { pipeline: "occupancy".to_owned(), size: [8, 8], sets, parts, ..Request::default() };
@@ -48,7 +53,7 @@ fn whole(scene: &Scene, grid: &Grid, rule: Rule) -> Vec<u32> {
 }
 
 /// Voxels that `a` fills and `b` does not.
-fn beyond(a: &[u32], b: &[u32]) -> usize {
+pub fn beyond(a: &[u32], b: &[u32]) -> usize {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).filter(|(a, b)| **a > 0 && **b == 0).count()
 }

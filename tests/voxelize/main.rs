@@ -3,6 +3,7 @@
 //! also made wrong on purpose, which must show.
 
 mod atlas;
+mod corners;
 mod crowds;
 #[path = "../support/glb.rs"]
 mod glb;
@@ -21,5 +22,8 @@ mod sums;
 #[path = "../support/scenes.rs"]
 mod support;
 mod textures;
+mod turned;
+mod turned_light;
+mod turns;
 mod voxelizer;
 mod wide;

@@ -13,7 +13,7 @@ const SIDE: i64 = 64;
 
 /// How often a closed mesh goes around a point: the solid angle of all its triangles from there, over 4π (Van Oosterom
 /// and Strackee 1983, "The Solid Angle of a Plane Triangle").
-fn winding(triangles: &[Triangle], point: Point) -> f64 {
+pub fn winding(triangles: &[Triangle], point: Point) -> f64 {
     let angle = |triangle: &Triangle| {
         let [a, b, c] = triangle.map(|corner| {
             DVec3::from_array([0, 1, 2].map(|axis| (corner[axis] - point[axis]) as f64 / VOXEL as f64))

@@ -45,7 +45,7 @@ pub const METHODS: [Method; 5] = [
     Method::with_cutoff("voxelize/queue"),
 ];
 
-fn gpu() -> &'static Gpu {
+pub fn gpu() -> &'static Gpu {
     static GPU: OnceLock<Gpu> = OnceLock::new();
     GPU.get_or_init(|| {
         Gpu::open(None, &LimitSet::Adapter)
@@ -88,10 +88,15 @@ pub fn picture(pipeline: &str, shown: &str, scene: &Scene, grid: &Grid, way: &Wa
         .unwrap_or_else(|problems| panic!("{way:?}, {grid:?}: {:?}", problems.iter().collect::<Vec<_>>()))
 }
 
-/// One frame of a pipeline of `tests/library-voxelize`.
-pub fn run(request: &Request, shown: &str, scene: &Scene) -> Result<Image, Problems> {
+/// With the pipelines of `tests/library-voxelize`.
+pub fn library() -> Library {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/library-voxelize");
-    let library = Library::new(vec![folder])?;
+    Library::new(vec![folder]).expect("the library")
+}
+
+/// One frame of a pipeline.
+pub fn run(request: &Request, shown: &str, scene: &Scene) -> Result<Image, Problems> {
+    let library = library();
     let clock = Clock::Wall("for the test".to_owned());
     let mut frame = prepare(request, &library, Some(scene))?.realise(gpu(), scene, clock, None)?;
     frame.run(gpu(), &Changes::All)?;
