@@ -1,34 +1,18 @@
-// Marks voxels as filled (lib/filled_words). The payload that imports this declares `filled`, array<atomic<u32>>.
-//
-// Reads a word; the first time adds to it, and the first time of its word to another. Most are marked already: looking
-// first costs less than adding.
+// Marks voxels as filled, in order of their numbers. Costs as lib/mark.
 
-import lib/filled_words;
-
-/// What the word was before.
-fn or_word(at: u32, mask: u32) -> u32 {
-    let now = atomicLoad(&filled[at]);
-    if (now & mask) == mask {
-        return now;
-    }
-    return atomicOr(&filled[at], mask);
-}
-
-fn mark_word(word: u32, mask: u32) {
-    if mask != 0u && or_word(summary_words(arrayLength(&filled)) + word, mask) == 0u {
-        or_word(word_of(word), mask_of(word));
-    }
-}
+import lib/mark;
+import lib/rows;
 
 fn mark_filled(number: u32) {
-    mark_word(word_of(number), mask_of(number));
+    mark_bit(number);
 }
 
-/// Voxel `first` and those behind it, by the bits from the lowest.
-fn mark_filled_from(first: u32, bits: u32) {
-    let shift = first % 32u;
-    mark_word(word_of(first), bits << shift);
+/// Voxel `first` and those behind it along x, by the bits from the lowest.
+fn mark_row(first: vec3u, bits: u32) {
+    let bit = bit_of(first);
+    let shift = bit % 32u;
+    mark_word(word_of(bit), bits << shift);
     if shift > 0u {
-        mark_word(word_of(first) + 1u, bits >> (32u - shift));
+        mark_word(word_of(bit) + 1u, bits >> (32u - shift));
     }
 }

@@ -6,7 +6,7 @@
 
 import lib/dispatch;
 import lib/groups;
-import lib/is_filled;
+import role/voxels;
 
 var<storage, read_write> voxel_list: array<u32>;
 var<storage, read_write> voxel_count: array<atomic<u32>, 1>;
@@ -22,22 +22,13 @@ struct Counters {
 
 var<storage, read_write> counters: Counters;
 
-/// Which of the words 32 · `at` and those behind it are not zero.
-fn summary_of(at: u32) -> u32 {
-    @if(scene.moving) {
-        return filled[at] | moving_filled[at];
-    } @else {
-        return filled[at];
-    }
-}
-
 @compute @workgroup_size(64)
 fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
     let at = linear_index(id, workgroups, 64u);
     if at >= summary_words(arrayLength(&filled)) {
         return;
     }
-    var marked = summary_of(at);
+    var marked = filled_at(at);
     var count = 0u;
     for (var k = 0u; k < 32u && marked != 0u; k++) {
         count += countOneBits(filled_word(32u * at + take_bit(&marked)));
@@ -53,12 +44,12 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workg
     for (var first = (place + 63u) / 64u * 64u; first < place + count; first += 64u) {
         grow_groups(first / 64u);
     }
-    marked = summary_of(at);
+    marked = filled_at(at);
     for (var k = 0u; k < 32u && marked != 0u; k++) {
         let word = 32u * at + take_bit(&marked);
         var bits = filled_word(word);
         for (var i = 0u; i < 32u && bits != 0u; i++) {
-            voxel_list[place] = 32u * word + take_bit(&bits);
+            voxel_list[place] = number_of(32u * word + take_bit(&bits));
             place++;
         }
     }

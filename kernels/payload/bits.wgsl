@@ -1,19 +1,6 @@
-// Module of the role `payload`: voxels are filled or not, and no more. Costs as lib/fill.
+// Module of the role `payload`: voxels are filled or not, and no more. Costs as lib/mark.
 
 import lib/fill;
-import lib/grid;
+import lib/no_attributes;
 
 var<storage, read_write> filled: array<atomic<u32>>;
-
-/// Nothing more is known of a triangle.
-struct Surface {
-    triangle: u32,
-}
-
-fn surface_of(triangle: u32, corners: array<vec3f, 3>) -> Surface {
-    return Surface(triangle);
-}
-
-fn add_fragment(surface: Surface, voxel: vec3u) {
-    mark_filled(voxel_number(voxel));
-}

@@ -1,13 +1,12 @@
 // Fills what lies inside: along a row of voxels, all from an odd crossing (voxelize/solid_crossings) to the next.
 //
-// A thread for each row reads its words, and adds to one or two for each that has an inside.
+// A thread for each row reads its words; writes what the payload does for each that has an inside.
 
 import lib/dispatch;
-import lib/fill;
 import lib/grid;
+import role/payload;
 
 var<storage, read> crossings: array<u32>;
-var<storage, read_write> filled: array<atomic<u32>>;
 
 /// Each bit becomes the parity of itself and all lower ones.
 fn parities(crossed: u32) -> u32 {
@@ -35,6 +34,6 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workg
         if left < 32u {
             bits &= (1u << left) - 1u;
         }
-        mark_filled_from(row * size.x + 32u * k, bits);
+        mark_row(vec3u(32u * k, row % size.y, row / size.y), bits);
     }
 }

@@ -35,7 +35,7 @@ fn shipped_pipelines_keep_their_bits(scene_name: &str) {
 }
 
 /// Ways to voxelize, and what voxels hold: all that fill the same voxels. Running averages say that they depend on order.
-const PARTS: [(&str, &str); 10] = [
+const PARTS: [(&str, &str); 11] = [
     ("voxelize", "voxelize/fragments"),
     ("voxelize", "voxelize/hybrid"),
     ("voxelize", "voxelize/classified"),
@@ -43,6 +43,7 @@ const PARTS: [(&str, &str); 10] = [
     ("voxelize", "voxelize/atlas"),
     ("voxelize", "voxelize/solid"),
     ("payload", "payload/maximum"),
+    ("payload", "payload/slices"),
     ("grid", "grid/box"),
     ("grid", "grid/window"),
     ("grid", "grid/turned"),
@@ -55,8 +56,9 @@ fn parts_keep_their_bits_where_things_move() {
     // Unwrapped here rather than in the user's cache.
     assert!(scene.atlas.set(Arc::new(Atlas::of(&scene, None))).is_ok());
     for (role, part) in PARTS {
-        // The inside of meshes has no attributes.
-        let pipeline = if part == "voxelize/solid" { "cubes" } else { "cones" };
+        // Some have no attributes.
+        let bare = ["voxelize/solid", "payload/slices"].contains(&part);
+        let pipeline = if bare { "cubes" } else { "cones" };
         let mut job = small(&scene, pipeline).set_where_known("bounces", "1");
         job.request.parts.push((role.to_owned(), part.to_owned()));
         let job = job.set_where_known("cutoff", "8").set_where_known("yaw", "30.0");

@@ -17,6 +17,7 @@ mod payloads;
 mod properties;
 mod random;
 mod scans;
+mod slices;
 mod solid;
 mod sums;
 #[path = "../support/scenes.rs"]

@@ -1,0 +1,15 @@
+// What payloads do that note of voxels only whether they are filled: the module that imports this brings the order of the
+// bits (lib/rows, lib/slices) and lib/mark.
+
+/// Nothing more is known of a triangle.
+struct Surface {
+    triangle: u32,
+}
+
+fn surface_of(triangle: u32, corners: array<vec3f, 3>) -> Surface {
+    return Surface(triangle);
+}
+
+fn add_fragment(surface: Surface, voxel: vec3u) {
+    mark_bit(bit_of(voxel));
+}
