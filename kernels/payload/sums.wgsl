@@ -8,6 +8,7 @@ import lib/fixed;
 import lib/grid;
 import lib/sum_words;
 import lib/surface;
+import lib/voxel_by_voxel;
 
 var<storage, read_write> filled: array<atomic<u32>>;
 var<storage, read_write> sums: array<atomic<u32>>;

@@ -34,6 +34,6 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workg
         if left < 32u {
             bits &= (1u << left) - 1u;
         }
-        mark_row(vec3u(32u * k, row % size.y, row / size.y), bits);
+        mark_along(vec3u(32u * k, row % size.y, row / size.y), bits);
     }
 }
