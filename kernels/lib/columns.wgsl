@@ -102,7 +102,9 @@ fn fill_columns(placed: Placed, separability: u32, low: vec2i, high: vec2i) {
     var voxel = vec3f(0.0, f32(low.y) - 1.0, 0.0);
     // One loop through rows, columns and runs: threads whose triangles have other sizes wait less for each other than
     // in a loop for each.
-    loop {
+    let sides = high - low + 1;
+    let most = sides.x * sides.y * (placed.size.z + 1) + sides.y + 1;
+    for (var k = 0; k < most; k++) {
         if voxel.z <= run.high {
             let sure = is_sure(run, voxel.z);
             var filled = sure;
