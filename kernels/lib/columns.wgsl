@@ -2,16 +2,14 @@
 // to the role `payload`.
 //
 // Source: R 4.1.1, tests in lib/overlap. R turns triangles so that columns run along the axis that the normal is
-// nearest to; since runs need no test per voxel, they may run along any: along x, voxels of a run lie next to each
-// other in memory.
+// nearest to; since runs need no test per voxel, they may run along any: along the one that the payload names as
+// `BIT_AXIS`, a word takes many of them at once.
 
 import lib/grid;
 import lib/overlap;
 import lib/unit_corners;
 import role/payload;
 
-/// The axis of the grid along which voxels lie next to each other in memory.
-const ROWS: u32 = 0u;
 /// Of the knob `separability`: the thin one; the other is conservative.
 const THIN: u32 = 6u;
 
@@ -85,11 +83,11 @@ fn placed_surface(placed: Placed) -> Surface {
 
 /// All of a triangle, by the calling thread.
 fn fill_all(placed: Placed, separability: u32) {
-    let rows = placed_along(placed, ROWS);
+    let rows = placed_along(placed, BIT_AXIS);
     fill_columns(rows, separability, vec2i(0), rows.size.xy);
 }
 
-/// The columns from `low` to `high` of a triangle that is placed along x, by the calling thread.
+/// The columns from `low` to `high` of a triangle that is placed along `BIT_AXIS`, by the calling thread.
 fn fill_columns(placed: Placed, separability: u32, low: vec2i, high: vec2i) {
     let surface = placed_surface(placed);
     let overlap = prepared(placed, separability);

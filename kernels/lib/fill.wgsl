@@ -16,11 +16,3 @@ fn mark_along(first: vec3u, bits: u32) {
         mark_word(word_of(bit) + 1u, bits >> (32u - shift));
     }
 }
-
-/// Up to `length` voxels by number; returns how many: those in the first one's word.
-fn mark_row(first: u32, length: u32) -> u32 {
-    let begin = first % 32u;
-    let count = min(32u - begin, length);
-    mark_word(word_of(first), (0xffffffffu >> (32u - count)) << begin);
-    return count;
-}

@@ -13,3 +13,11 @@ fn mark_word(word: u32, mask: u32) {
 fn mark_bit(bit: u32) {
     mark_word(word_of(bit), mask_of(bit));
 }
+
+/// Up to `length` bits from the first on; returns how many: those in the first word.
+fn mark_row(first: u32, length: u32) -> u32 {
+    let begin = first % 32u;
+    let count = min(32u - begin, length);
+    mark_word(word_of(first), (0xffffffffu >> (32u - count)) << begin);
+    return count;
+}

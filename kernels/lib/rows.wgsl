@@ -2,6 +2,9 @@
 
 import lib/grid;
 
+/// The axis of the grid along which bits follow each other.
+const BIT_AXIS: u32 = 0u;
+
 fn bit_of(voxel: vec3u) -> u32 {
     return voxel_number(voxel);
 }

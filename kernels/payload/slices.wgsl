@@ -3,7 +3,6 @@
 import lib/mark;
 import lib/no_attributes;
 import lib/slices;
-import lib/voxel_by_voxel;
 
 var<storage, read_write> filled: array<atomic<u32>>;
 
