@@ -35,7 +35,7 @@ fn shipped_pipelines_keep_their_bits(scene_name: &str) {
 }
 
 /// Ways to voxelize, and what voxels hold: all that fill the same voxels. Running averages say that they depend on order.
-const PARTS: [(&str, &str); 9] = [
+const PARTS: [(&str, &str); 10] = [
     ("voxelize", "voxelize/fragments"),
     ("voxelize", "voxelize/hybrid"),
     ("voxelize", "voxelize/classified"),
@@ -43,6 +43,7 @@ const PARTS: [(&str, &str); 9] = [
     ("voxelize", "voxelize/atlas"),
     ("voxelize", "voxelize/solid"),
     ("payload", "payload/maximum"),
+    ("payload", "payload/compact"),
     ("grid", "grid/box"),
     ("grid", "grid/window"),
 ];

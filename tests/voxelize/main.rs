@@ -3,6 +3,7 @@
 //! also made wrong on purpose, which must show.
 
 mod atlas;
+mod compact;
 mod crowds;
 #[path = "../support/glb.rs"]
 mod glb;

@@ -45,7 +45,7 @@ pub const METHODS: [Method; 5] = [
     Method::with_cutoff("voxelize/queue"),
 ];
 
-fn gpu() -> &'static Gpu {
+pub fn gpu() -> &'static Gpu {
     static GPU: OnceLock<Gpu> = OnceLock::new();
     GPU.get_or_init(|| {
         Gpu::open(None, &LimitSet::Adapter)
