@@ -4,6 +4,7 @@
 // Reads a word per vertex, and a voxel per fragment that shows it; writes a texel per fragment.
 
 import lib/grid;
+import lib/listed;
 @if(shown == "albedo") import role/voxels;
 
 struct Camera {
@@ -11,7 +12,6 @@ struct Camera {
 }
 
 var<uniform> camera: Camera;
-var<storage, read> voxel_list: array<u32>;
 
 struct Varying {
     @builtin(position) clip: vec4f,
@@ -30,9 +30,7 @@ fn cube_corner(vertex: u32) -> vec3u {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Varying {
-    let number = voxel_list[index / 36u];
-    let size = values.grid_size;
-    let voxel = vec3u(number % size.x, number / size.x % size.y, number / (size.x * size.y));
+    let voxel = listed_voxel(index / 36u);
     let corner = from_grid(vec3f(voxel + cube_corner(index % 36u)));
     let shade = vec3f(0.5, 0.9, 0.65)[index % 36u / 12u];
     var out: Varying;
