@@ -10,6 +10,7 @@ mod glb;
 mod grids;
 mod hard;
 mod lattice;
+mod lists;
 mod meshes;
 mod model;
 mod oracle;
