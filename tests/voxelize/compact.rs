@@ -59,7 +59,7 @@ pub fn start(request: &Request, scene: &Scene) -> Frame {
     let clock = Clock::Wall("for the test".to_owned());
     let prepared = prepare(request, &library, Some(scene));
     prepared
-        .and_then(|prepared| Ok(prepared.realise(gpu(), scene, clock, None)?))
+        .and_then(|prepared| prepared.realise(gpu(), scene, clock, None))
         .unwrap_or_else(|problems| panic!("{request:?}: {:?}", problems.iter().collect::<Vec<_>>()))
 }
 
