@@ -11,11 +11,13 @@ struct CutoffKnobs {
 
 var<uniform> knobs: CutoffKnobs;
 
-/// Area in the plane that its columns cross, in voxels²; of what lies outside the grid no more than its bounds there.
+/// Area across the axis that the normal is nearest to, in voxels²; of what lies outside the grid no more than its
+/// bounds there.
 fn projected_area(placed: Placed) -> f32 {
-    let u = vec2f(placed.corners[1].xy - placed.corners[0].xy) / f32(UNITS);
-    let v = vec2f(placed.corners[2].xy - placed.corners[0].xy) / f32(UNITS);
-    let bounds = vec2f(placed.size.xy + 1);
+    let along = placed_along(placed, placed.facing.axis);
+    let u = vec2f(along.corners[1].xy - along.corners[0].xy) / f32(UNITS);
+    let v = vec2f(along.corners[2].xy - along.corners[0].xy) / f32(UNITS);
+    let bounds = vec2f(along.size.xy + 1);
     return min(0.5 * abs(u.x * v.y - u.y * v.x), bounds.x * bounds.y);
 }
 

@@ -1,22 +1,12 @@
 // Marks voxels as filled (lib/filled_words). The payload that imports this declares `filled`, array<atomic<u32>>.
 //
-// Reads a word; the first time adds to it, and the first time of its word to another. Most are marked already: looking
-// first costs less than adding.
+// Adds to a word, and the first time of it to another. A look before, whether the bits are there, costs what it saves.
 
 import lib/filled_words;
 
-/// What the word was before.
-fn or_word(at: u32, mask: u32) -> u32 {
-    let now = atomicLoad(&filled[at]);
-    if (now & mask) == mask {
-        return now;
-    }
-    return atomicOr(&filled[at], mask);
-}
-
 fn mark_word(word: u32, mask: u32) {
-    if mask != 0u && or_word(summary_words(arrayLength(&filled)) + word, mask) == 0u {
-        or_word(word_of(word), mask_of(word));
+    if mask != 0u && atomicOr(&filled[summary_words(arrayLength(&filled)) + word], mask) == 0u {
+        atomicOr(&filled[word_of(word)], mask_of(word));
     }
 }
 
@@ -31,4 +21,12 @@ fn mark_filled_from(first: u32, bits: u32) {
     if shift > 0u {
         mark_word(word_of(first) + 1u, bits >> (32u - shift));
     }
+}
+
+/// Up to `length` voxels by number; returns how many: those in the first one's word.
+fn mark_row(first: u32, length: u32) -> u32 {
+    let begin = first % 32u;
+    let count = min(32u - begin, length);
+    mark_word(word_of(first), (0xffffffffu >> (32u - count)) << begin);
+    return count;
 }

@@ -11,6 +11,18 @@ fn unit_or(v: vec3f, otherwise: vec3f) -> vec3f {
     return otherwise;
 }
 
+/// The integer nearest to x (of two, the even one), for sizes up to 2^22: the sum's lowest bits are it. A conversion
+/// would be checked for what no integer can hold, which made conversions the dearest steps of the voxelizers
+/// (lavapipe).
+fn nearest_integer(x: f32) -> i32 {
+    return bitcast<i32>(x + 12582912.0) - 0x4b400000;
+}
+
+/// The same for each component.
+fn nearest_integers(x: vec3f) -> vec3i {
+    return bitcast<vec3i>(x + 12582912.0) - 0x4b400000;
+}
+
 /// Sum of the absolute components.
 fn norm_1(v: vec3f) -> f32 {
     return abs(v.x) + abs(v.y) + abs(v.z);

@@ -1,5 +1,6 @@
-// Voxelizing by the rasterizer: a triangle is drawn along the axis that its normal is nearest to, a pixel for each column
-// of voxels, so much larger that every column which it may meet has its centre inside; fragments then test exactly.
+// Voxelizing by the rasterizer: a triangle is drawn along the axis that its normal is nearest to, a pixel for each
+// column of voxels, so much larger that every column which it may meet has its centre inside; fragments then test
+// exactly.
 //
 // Source: R 4.1.2, eq. 4.2 with the offsets of the edges as separability asks for: half the voxel's extent across the
 // edge. (As printed, with inward normals, it shrinks the triangle.) At a small angle the moved edges meet far away:
@@ -112,21 +113,23 @@ fn outline_of(placed: Placed, thin: bool) -> Outline {
     return best;
 }
 
-/// A vertex of the triangle that is drawn for a triangle of the scene, into a square as wide as the grid's longest side.
+/// A vertex of the triangle that is drawn for a triangle of the scene, into a square as wide as the grid's longest
+/// side.
 fn outline_vertex(triangle: u32, vertex: u32, separability: u32) -> Outlined {
-    let placed = placed_of(triangle);
+    let scene_placed = placed_of(triangle);
     var out: Outlined;
-    if !placed.meets {
+    if !scene_placed.meets {
         out.clip = vec4f(2.0, 2.0, 0.5, 1.0);
         return out;
     }
-    var outline = outline_of(placed, separability == THIN && any(placed.facing.signs != vec3i(0)));
+    let placed = placed_along(scene_placed, scene_placed.facing.axis);
+    let outline = outline_of(placed, separability == THIN && any(placed.facing.signs != vec3i(0)));
     let side = f32(max(values.grid_size.x, max(values.grid_size.y, values.grid_size.z)));
     let at = 2.0 / side * (outline.corners[vertex] + vec2f(placed.first.xy)) - 1.0;
     let signs = placed.facing.signs + 1;
     out.clip = vec4f(at.x, -at.y, 0.5, 1.0);
     out.a = vec4i(placed.corners[0], i32(triangle));
-    out.b = vec4i(placed.corners[1], i32(placed.facing.axis));
+    out.b = vec4i(placed.corners[1], i32(placed.axis));
     out.c = vec4i(placed.corners[2], signs.x + 4 * signs.y + 16 * signs.z);
     out.normal = placed.facing.normal;
     out.first = placed.first;
@@ -136,24 +139,25 @@ fn outline_vertex(triangle: u32, vertex: u32, separability: u32) -> Outlined {
 
 /// Fills the column of a fragment.
 fn outline_fragment(in: Outlined, separability: u32) {
-    let p = vec2i(floor(in.clip.xy)) - in.first.xy;
-    if any(p < vec2i(0)) || any(p > in.size.xy) {
+    let p = floor(in.clip.xy) - vec2f(in.first.xy);
+    if any(p < vec2f(0.0)) || any(p > vec2f(in.size.xy)) {
         return;
     }
     let signs = vec3i(in.c.w & 3, (in.c.w >> 2u) & 3, in.c.w >> 4u) - 1;
     let corners = array(in.a.xyz, in.b.xyz, in.c.xyz);
-    let facing = Facing(signs, in.normal, u32(in.b.w));
-    let placed = Placed(u32(in.a.w), corners, facing, in.first, in.size, true);
+    // Columns are along the normal.
+    let facing = Facing(signs, in.normal, 2u);
+    let placed = Placed(u32(in.a.w), corners, facing, in.first, in.size, true, u32(in.b.w));
     let overlap = prepared(placed, separability);
-    if !inside(overlap, overlap.xy, 0u, 1u, 2u, p) {
+    let row = row_of(overlap, p.y);
+    if p.x < row.x.low || p.x > row.x.high {
         return;
     }
-    let range = column_range(overlap, p);
+    let run = run_of(overlap, row, p.x, p.y);
     let surface = placed_surface(placed);
-    for (var z = max(range.x, 0); z <= min(range.y, in.size.z); z++) {
-        let voxel = vec3i(p, z);
-        if fills(overlap, range, voxel) {
-            add_fragment(surface, grid_voxel(placed, voxel));
+    for (var z = run.low; z <= run.high; z += 1.0) {
+        if fills(overlap, run, vec3f(p, z)) {
+            add_fragment(surface, grid_voxel(placed, vec3f(p, z)));
         }
     }
 }

@@ -70,6 +70,18 @@ fn corner_position(vertex: u32, instance: u32) -> vec3f {
     return instances[instance].to_world * vec4f(vertices[vertex].position, 1.0);
 }
 
+/// Of a triangle's corners.
+fn corner_positions(triangle: u32) -> array<vec3f, 3> {
+    let t = triangles[triangle];
+    // Loaded once: it is most of what a triangle's place takes.
+    let to_world = instances[t.instance].to_world;
+    return array(
+        to_world * vec4f(vertices[t.a].position, 1.0),
+        to_world * vec4f(vertices[t.b].position, 1.0),
+        to_world * vec4f(vertices[t.c].position, 1.0),
+    );
+}
+
 /// Both sets of texture coordinates.
 fn corner_uv(vertex: u32) -> vec4f {
     var uv = vec4f(vertices[vertex].u, vertices[vertex].v, 0.0, 0.0);

@@ -10,6 +10,7 @@ import lib/fill;
 import lib/grid;
 import lib/packed_words;
 import lib/surface;
+import lib/voxel_by_voxel;
 
 var<storage, read_write> filled: array<atomic<u32>>;
 var<storage, read_write> packed: array<atomic<u32>>;

@@ -17,3 +17,8 @@ fn surface_of(triangle: u32, corners: array<vec3f, 3>) -> Surface {
 fn add_fragment(surface: Surface, voxel: vec3u) {
     mark_filled(voxel_number(voxel));
 }
+
+/// Of `length` voxels along x, from `voxel` on, as many as one word has; returns how many.
+fn add_row(surface: Surface, voxel: vec3u, length: u32) -> u32 {
+    return mark_row(voxel_number(voxel), length);
+}

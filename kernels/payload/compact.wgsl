@@ -7,6 +7,7 @@ import lib/fill;
 import lib/grid;
 import lib/slots;
 import lib/sum_add;
+import lib/voxel_by_voxel;
 
 var<storage, read_write> filled: array<atomic<u32>>;
 var<storage, read_write> sums: array<atomic<u32>>;

@@ -1,15 +1,15 @@
 // Puts the point of the surface that each texel of the atlas stands for into its voxel: second pass of the atlas
 // voxelizer (T, chapter 3, where the points are drawn).
 //
-// A point is where the texel's centre lies in the triangle whose corners are snapped as in lib/overlap, so it lies in a
+// A point is where the texel's centre lies in the triangle whose corners are snapped (lib/units), so it lies in a
 // voxel that the triangle meets. Where rounding could have moved it over a face, integers decide whether the triangle
 // meets that voxel; if not, the point is left out. On a face exactly it is in the voxel above.
 // Reads per texel its number; of those with a triangle 3 corners (ca. 250 B) and what the payload wants.
 
 import lib/atlas;
 import lib/grid;
-import lib/overlap;
-import lib/scene;
+import lib/overlap_exact;
+import lib/unit_corners;
 import role/payload;
 
 /// Bounds what single floats lose in a point's place, in parts of the largest coordinate: 16 roundings.
@@ -41,26 +41,12 @@ fn triangle_meets(corners: array<vec3i, 3>, voxel: vec3i) -> bool {
     if any(low > vec3i(0)) || any(high < vec3i(0)) {
         return false;
     }
-    let facing = turned(facing_of(p));
-    for (var i = 0u; i < 3u; i++) {
-        p[i] = turn(p[i], facing.axis);
-    }
-    let overlap = overlap_of(p, facing, false, vec3i(0));
-    if !inside(overlap, overlap.xy, 0u, 1u, 2u, vec2i(0)) {
-        return false;
-    }
-    let range = column_range(overlap, vec2i(0));
-    return range.x <= 0 && range.y >= 0 && fills(overlap, range, vec3i(0));
+    return exactly_fills(asked_of(p, facing_of(p), false), vec3i(0));
 }
 
 /// Adds the point of `triangle` at a place of the atlas, if it lies in the grid.
 fn add_point(triangle: u32, place: vec2f) {
-    let t = triangles[triangle];
-    let corners = array(
-        snapped(to_grid(corner_position(t.a, t.instance))),
-        snapped(to_grid(corner_position(t.b, t.instance))),
-        snapped(to_grid(corner_position(t.c, t.instance))),
-    );
+    let corners = unit_corners(triangle);
     // From the first corner's voxel on, so that little is lost.
     let first = voxel_of(corners[0]);
     var placed: array<vec3f, 3>;

@@ -26,7 +26,7 @@ fn main(
     if queue[place].x == NO_TRIANGLE {
         return;
     }
-    let placed = placed_of(queue[place].x);
+    let placed = placed_along(placed_of(queue[place].x), ROWS);
     let segment = queue[place].y * SEGMENTS_OF_A_CHUNK + local;
     let across = segments_across(placed);
     let low = vec2i(vec2u(segment % across * u32(SEGMENT), segment / across));

@@ -27,7 +27,7 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workg
     }
     // A full queue is left alone: however many triangles there are, the count never begins anew.
     if is_large(placed) && atomicLoad(&queue_count[0]) < arrayLength(&queue) {
-        let chunks = chunks_of(placed);
+        let chunks = chunks_of(placed_along(placed, ROWS));
         let place = atomicAdd(&queue_count[0], chunks);
         let room = arrayLength(&queue) - min(place, arrayLength(&queue));
         let chunk_of = select(NO_TRIANGLE, placed.triangle, chunks <= room);

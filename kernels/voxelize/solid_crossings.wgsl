@@ -3,15 +3,15 @@
 //
 // Source: Schwarz and Seidel 2010, "Fast Parallel Surface and Solid Voxelization on GPUs", 5 (parity along an axis);
 // what they turn over is all voxels beyond, here voxelize/solid_rows does that once for all.
-// Exact: corners are snapped as in lib/overlap. A middle line through an edge crosses one of the two triangles there: the
+// Exact: corners are snapped (lib/units). A middle line through an edge crosses one of the two triangles there: the
 // one whose edge, with the triangle on its left, goes up, or level and to the right. A centre on the plane lies beyond.
 // A thread for each triangle reads 3 corners, and adds to a word for each row that it crosses.
 
 import lib/dispatch;
 import lib/geometry;
 import lib/grid;
-import lib/overlap;
-import lib/scene;
+import lib/overlap_exact;
+import lib/unit_corners;
 
 var<storage, read_write> crossings: array<atomic<u32>>;
 
@@ -30,11 +30,11 @@ fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workg
     if triangle >= geometry.triangles {
         return;
     }
-    let t = triangles[geometry.first + triangle];
+    let corners = unit_corners(geometry.first + triangle);
     // Rows along z: y, z, x.
-    let a = turn(snapped(to_grid(corner_position(t.a, t.instance))), 0u);
-    let b = turn(snapped(to_grid(corner_position(t.b, t.instance))), 0u);
-    let c = turn(snapped(to_grid(corner_position(t.c, t.instance))), 0u);
+    let a = turn(corners[0], 0u);
+    let b = turn(corners[1], 0u);
+    let c = turn(corners[2], 0u);
     let n = normal_of(array(a, b, c));
     let facing = sign_64(n[2]);
     if facing == 0 {

@@ -1,7 +1,7 @@
 // Voxelizes with one thread for each triangle: it goes through all columns of its triangle (R 4.1.1).
 //
-// Reads per triangle 3 corners and what the payload wants; writes per fragment what the payload does. Large triangles
-// are slow (R figure 4.6): nothing shares their work.
+// Reads per triangle 3 corners and what the payload wants; writes per fragment what the payload does. Nothing shares the
+// work of a large triangle (R figure 4.6), but it grows with its columns, not with its voxels (lib/overlap).
 
 import lib/columns;
 import lib/dispatch;

@@ -2,9 +2,7 @@
 // (3 · (i mod 1024) + c, i / 1024).
 // Reads a corner, writes a texel.
 
-import lib/grid;
-import lib/overlap;
-import lib/scene;
+import lib/unit_corners;
 
 var corners: texture_storage_2d<rgba32sint, write>;
 
@@ -12,9 +10,6 @@ var corners: texture_storage_2d<rgba32sint, write>;
 fn main(@builtin(global_invocation_id) id: vec3u) {
     let triangle = id.y * 1024u + id.x / 3u;
     if id.x < 3072u && triangle < arrayLength(&triangles) {
-        let t = triangles[triangle];
-        let vertex = array(t.a, t.b, t.c)[id.x % 3u];
-        let unit = snapped(to_grid(corner_position(vertex, t.instance)));
-        textureStore(corners, id.xy, vec4i(unit, 0));
+        textureStore(corners, id.xy, vec4i(unit_corners(triangle)[id.x % 3u], 0));
     }
 }

@@ -1,7 +1,7 @@
 // Wide integers of chosen words: the sum of two products of 64 and 32 bits, its sign, and of the first factor its sign
 // and value. Three texels for each choice, words as halves.
 
-import lib/overlap;
+import lib/facing;
 import lib/random;
 
 var wide: texture_storage_2d<rgba32float, write>;
