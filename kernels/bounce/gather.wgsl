@@ -3,16 +3,17 @@
 // Source: R 6.4 (eq. 6.14: ρ/π Σ W L), for voxels instead of pixels. With T this operator and L₁ the first scattering,
 // n rounds of L ← L₁ + T L give the first n + 1 scatterings. The weights sum to at most π and opacities to 1, so that
 // T's gain is at most the albedo.
-// Reads per filled voxel: 40 B and 12 cones; writes one texel.
+// A thread for each voxel of the list. Reads 40 B and 12 cones; writes one texel.
 
-import lib/filled;
+import lib/dispatch;
+import lib/listed;
 import lib/gather;
 import lib/math;
 import lib/two_sided;
 import role/storage;
 import role/voxels;
 
-/// Premultiplied radiance; opacity 1 where there is a surface.
+/// Premultiplied radiance, and opacity 1, where there is a surface; nobody reads it elsewhere.
 var bounced: texture_storage_3d<rgba16float, write>;
 
 fn seen_at(position: vec3f, level: f32, direction: vec3f) -> vec4f {
@@ -24,22 +25,13 @@ fn seen_beyond(direction: vec3f, width: f32) -> vec3f {
     return vec3f(0.0);
 }
 
-@compute @workgroup_size(4, 4, 4)
-fn main(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let size = textureDimensions(bounced);
-    let inside = all(id < size);
-    let filled = inside && is_filled(id);
-    if inside && !filled {
-        textureStore(bounced, id, vec4f(0.0));
-    }
-    if local >= list_filled(filled, local) {
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
+    let place = linear_index(id, workgroups, 64u);
+    if place >= listed_voxels() {
         return;
     }
-    let voxel = filled_voxel(local, group);
+    let voxel = listed_voxel(place);
     let surfel = surfel_of(voxel);
     let n = unit_or(surfel.normal, vec3f(0.0, 1.0, 0.0));
     let sides = Sides(gather(surfel.position, n), gather(surfel.position, -n));

@@ -1,19 +1,22 @@
-// Filled voxels as cubes, from their list (list/filled), shaded by side as debug/filled does.
+// Filled voxels as cubes, from their list (list/filled), shaded by side as debug/filled does, and in their albedo where
+// that is to be shown.
 //
-// Reads a word per vertex; writes a texel per fragment.
+// Reads a word per vertex, and a voxel per fragment that shows it; writes a texel per fragment.
 
 import lib/grid;
+import lib/listed;
+@if(shown == "albedo") import role/voxels;
 
 struct Camera {
     view_projection: mat4x4f,
 }
 
 var<uniform> camera: Camera;
-var<storage, read> voxel_list: array<u32>;
 
 struct Varying {
     @builtin(position) clip: vec4f,
     @location(0) @interpolate(flat) shade: f32,
+    @if(shown == "albedo") @location(1) @interpolate(flat) voxel: vec3u,
 }
 
 /// The corner of a side: 6 of them for each of 3 axes, at its lower and its upper end.
@@ -27,12 +30,16 @@ fn cube_corner(vertex: u32) -> vec3u {
 
 @vertex
 fn vertex(@builtin(vertex_index) index: u32) -> Varying {
-    let number = voxel_list[index / 36u];
-    let size = values.grid_size;
-    let voxel = vec3u(number % size.x, number / size.x % size.y, number / (size.x * size.y));
+    let voxel = listed_voxel(index / 36u);
     let corner = from_grid(vec3f(voxel + cube_corner(index % 36u)));
     let shade = vec3f(0.5, 0.9, 0.65)[index % 36u / 12u];
-    return Varying(camera.view_projection * vec4f(corner, 1.0), shade);
+    var out: Varying;
+    out.clip = camera.view_projection * vec4f(corner, 1.0);
+    out.shade = shade;
+    @if(shown == "albedo") {
+        out.voxel = voxel;
+    }
+    return out;
 }
 
 struct Targets {
@@ -41,5 +48,9 @@ struct Targets {
 
 @fragment
 fn fragment(in: Varying) -> Targets {
-    return Targets(vec4f(vec3f(in.shade), 1.0));
+    var color = vec3f(in.shade);
+    @if(shown == "albedo") {
+        color *= surfel_of(in.voxel).albedo;
+    }
+    return Targets(vec4f(color, 1.0));
 }

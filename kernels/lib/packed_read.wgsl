@@ -29,7 +29,7 @@ fn attributes_at(at: u32) -> vec3f {
 
 fn surfel_of(voxel: vec3u) -> Surfel {
     if !is_filled(voxel) {
-        return Surfel(false, vec3f(0.0), vec3f(0.0), vec3f(0.0));
+        return no_surfel();
     }
     let at = voxel_number(voxel) * PACKED_WORDS;
     let normal = normal_of_unit(attributes_at(at + PACKED_NORMAL));

@@ -8,3 +8,8 @@ struct Surfel {
     /// World space, metres; no further from the surface than half the voxel's diagonal.
     position: vec3f,
 }
+
+/// Where there is nothing.
+fn no_surfel() -> Surfel {
+    return Surfel(false, vec3f(0.0), vec3f(0.0), vec3f(0.0));
+}

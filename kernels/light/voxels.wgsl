@@ -1,15 +1,17 @@
 // First scattering in the voxels: the light of all lights, and of emitting voxels, that the surface in each voxel
-// reflects. Writes premultiplied radiance ρ/π · E and opacity 1 where there is a surface, 0 elsewhere.
+// reflects. Writes premultiplied radiance ρ/π · E and opacity 1 where there is a surface; elsewhere there is nothing yet.
 //
 // Source: R 7.1 (eq. 7.1 with ρ/π · E in place of the products of colours), light maps looked up from the voxels. Light
 // is evaluated at the mean position of the surface, not at the voxel's centre: on the surface where that is flat, and
 // never further from it than half the voxel's diagonal (a mean of points in a cube is that close to one of them). By
 // this much the point is moved towards the light before it is looked up.
-// Emission, and light from outside, is gathered by the cones of the role `hemisphere` over each side of the mean normal, from the mean position.
-// Reads per filled voxel: 40 B, per light 64 + 112 B and 4 depths, and 12 cones where there is emission or an environment; writes 1 or 2
-// texels.
+// Emission, and light from outside, is gathered by the cones of the role `hemisphere` over each side of the mean normal,
+// from the mean position.
+// A thread for each voxel of the list. Reads 40 B of it, per light 64 + 112 B and 4 depths, and 12 cones where there is
+// emission or an environment; writes 1 or 2 texels.
 
-import lib/filled;
+import lib/dispatch;
+import lib/listed;
 import lib/math;
 import lib/two_sided;
 import role/voxels;
@@ -22,12 +24,6 @@ var lit: texture_storage_3d<rgba16float, write>;
 /// The same again: what bounces are added to.
 @if(bounces > 1)
 var first: texture_storage_3d<rgba16float, write>;
-
-struct Counters {
-    filled_voxels: atomic<u32>,
-}
-
-var<storage, read_write> counters: Counters;
 
 @if(lights.total > 0)
 fn add_lights(sides: ptr<function, Sides>, surfel: Surfel, n: vec3f) {
@@ -72,26 +68,13 @@ fn store(voxel: vec3u, radiance: vec4f) {
     }
 }
 
-@compute @workgroup_size(4, 4, 4)
-fn main(
-    @builtin(global_invocation_id) id: vec3u,
-    @builtin(workgroup_id) group: vec3u,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let size = textureDimensions(lit);
-    let inside = all(id < size);
-    let filled = inside && is_filled(id);
-    if inside && !filled {
-        store(id, vec4f(0.0));
-    }
-    let count = list_filled(filled, local);
-    if local >= count {
+@compute @workgroup_size(64)
+fn main(@builtin(global_invocation_id) id: vec3u, @builtin(num_workgroups) workgroups: vec3u) {
+    let place = linear_index(id, workgroups, 64u);
+    if place >= listed_voxels() {
         return;
     }
-    if local == 0u {
-        atomicAdd(&counters.filled_voxels, count);
-    }
-    let voxel = filled_voxel(local, group);
+    let voxel = listed_voxel(place);
     let surfel = surfel_of(voxel);
     let n = unit_or(surfel.normal, vec3f(0.0, 1.0, 0.0));
     var sides = Sides(vec3f(0.0), vec3f(0.0));

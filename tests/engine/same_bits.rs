@@ -35,7 +35,7 @@ fn shipped_pipelines_keep_their_bits(scene_name: &str) {
 }
 
 /// Ways to voxelize, and what voxels hold: all that fill the same voxels. Running averages say that they depend on order.
-const PARTS: [(&str, &str); 11] = [
+const PARTS: [(&str, &str); 12] = [
     ("voxelize", "voxelize/fragments"),
     ("voxelize", "voxelize/hybrid"),
     ("voxelize", "voxelize/classified"),
@@ -44,6 +44,7 @@ const PARTS: [(&str, &str); 11] = [
     ("voxelize", "voxelize/solid"),
     ("payload", "payload/maximum"),
     ("payload", "payload/slices"),
+    ("payload", "payload/compact"),
     ("grid", "grid/box"),
     ("grid", "grid/window"),
     ("grid", "grid/turned"),

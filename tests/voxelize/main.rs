@@ -3,6 +3,7 @@
 //! also made wrong on purpose, which must show.
 
 mod atlas;
+mod compact;
 mod corners;
 mod crowds;
 #[path = "../support/glb.rs"]
@@ -10,6 +11,7 @@ mod glb;
 mod grids;
 mod hard;
 mod lattice;
+mod lists;
 mod meshes;
 mod model;
 mod oracle;

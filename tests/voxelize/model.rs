@@ -15,13 +15,24 @@ pub struct Part {
     pub uvs: Vec<[f32; 2]>,
     /// Linear.
     pub color: [f32; 3],
+    /// Linear, at most 1.
+    pub emission: [f32; 3],
+    /// Where the image is less than half opaque, there is nothing.
+    pub masked: bool,
     /// Where the node lies.
     pub translation: [f32; 3],
 }
 
 impl Part {
     pub fn new(corners: Vec<[f32; 3]>) -> Self {
-        Self { corners, uvs: Vec::new(), color: [1.0; 3], translation: [0.0; 3] }
+        Self {
+            corners,
+            uvs: Vec::new(),
+            color: [1.0; 3],
+            emission: [0.0; 3],
+            masked: false,
+            translation: [0.0; 3],
+        }
     }
 }
 
@@ -79,7 +90,10 @@ impl Model {
                     "count": part.uvs.len(),
                 }));
             }
-            materials.push(json!({ "pbrMetallicRoughness": look }));
+            let alpha = if part.masked { "MASK" } else { "OPAQUE" };
+            materials.push(json!({
+                "pbrMetallicRoughness": look, "emissiveFactor": part.emission, "alphaMode": alpha,
+            }));
             meshes.push(json!({ "primitives": [{ "attributes": attributes, "material": i }] }));
             nodes.push(json!({ "mesh": i, "name": format!("part{i}"), "translation": part.translation }));
         }

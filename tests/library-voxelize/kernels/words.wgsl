@@ -12,7 +12,7 @@ var words: texture_storage_2d<r32uint, write>;
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if all(id.xy < textureDimensions(words)) {
         let voxel = vec3u(id.x / SUM_WORDS, id.y % values.grid_size.y, id.y / values.grid_size.y);
-        let word = sum_at(voxel_number(voxel) * SUM_WORDS + id.x % SUM_WORDS);
+        let word = sum_at(place_of(voxel_number(voxel)), id.x % SUM_WORDS);
         textureStore(words, id.xy, vec4u(word, 0u, 0u, 0u));
     }
 }
