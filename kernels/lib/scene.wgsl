@@ -66,15 +66,23 @@ struct Face {
     material: u32,
 }
 
+/// Most of what a triangle's place takes; where there is only one, all threads read the same.
+fn to_world_of(instance: u32) -> mat4x3f {
+    @if(scene.instances > 1) {
+        return instances[instance].to_world;
+    } @else {
+        return instances[0].to_world;
+    }
+}
+
 fn corner_position(vertex: u32, instance: u32) -> vec3f {
-    return instances[instance].to_world * vec4f(vertices[vertex].position, 1.0);
+    return to_world_of(instance) * vec4f(vertices[vertex].position, 1.0);
 }
 
 /// Of a triangle's corners.
 fn corner_positions(triangle: u32) -> array<vec3f, 3> {
     let t = triangles[triangle];
-    // Loaded once: it is most of what a triangle's place takes.
-    let to_world = instances[t.instance].to_world;
+    let to_world = to_world_of(t.instance);
     return array(
         to_world * vec4f(vertices[t.a].position, 1.0),
         to_world * vec4f(vertices[t.b].position, 1.0),
