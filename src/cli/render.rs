@@ -199,7 +199,10 @@ fn table(record: &Record) -> String {
             }
         }
     }
-    line(format_args!("{:<widest$}  {:>9}", "fills", ms(record.fills_ms)));
+    // A frame may have none, and what is not timed can't be told apart from it.
+    if record.fills_ms.is_some() {
+        line(format_args!("{:<widest$}  {:>9}", "fills", ms(record.fills_ms)));
+    }
     line(format_args!(
         "{:<widest$}  {:>9}  {:>9}  {:>9}  {:>9}",
         "frame",
