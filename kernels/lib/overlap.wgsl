@@ -113,8 +113,9 @@ fn overlap_of(corners: array<vec3i, 3>, facing: Facing, thin: bool, size: vec3i)
     let least = select(place - dot(max(up, vec3f(0.0)), vec3f(1.0)), place - middle - 1.0, out.asked.thin);
     let most = select(place - dot(min(up, vec3f(0.0)), vec3f(1.0)), place - middle, out.asked.thin);
     let far = abs(corner) + vec3f(size) + 2.0;
-    // The normal is off by more than what is computed with it.
-    let doubt = 2.0 * DOUBT * (far.x + far.y + far.z);
+    // The normal may be off by two DOUBTs (lib/facing: one of its own, one of its largest component); as much again is for
+    // what is computed with it.
+    let doubt = 4.0 * DOUBT * (far.x + far.y + far.z);
     let one = 1.0 / select(up.z, LEAST_PART, up.z == 0.0);
     let off = doubt * abs(one);
     // Without area there is no plane.
