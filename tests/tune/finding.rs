@@ -3,11 +3,6 @@
 use crate::bench::Bench;
 use serde_json::Value;
 
-/// The ratio of the value's median to the best, as the kernel's formula has it: nothing that was measured.
-fn turns(tile: f64) -> f64 {
-    (8.0 + (tile.log2() - 8.0).abs()) / 8.0
-}
-
 fn values(found: &Value) -> Vec<f64> {
     let tried = found["tried"].as_array().expect("what was tried");
     tried.iter().map(|tried| tried["value"].as_f64().expect("a number")).collect()
@@ -18,8 +13,8 @@ fn the_time_of_a_stage_is_made_least() {
     let bench = Bench::new();
     let (found, _) = bench.ok("tune POINT -p work --knob tile --least time --stage work");
     let tile = found["chosen"].as_f64().expect("a number");
-    // The best takes 1, the ends 2, the default 1.25: what was found is near, whatever else the machine does.
-    assert!(turns(tile) < 1.25, "{tile} of {:?}", values(&found));
+    // By the kernel's formula, and nothing that was measured: beyond these two it takes over twice what it does at 256.
+    assert!((128.0..=512.0).contains(&tile), "{tile} of {:?}", values(&found));
     assert_eq!(
         (&found["knob"], &found["least"], &found["of"]),
         (&"tile".into(), &"time".into(), &"work".into())
@@ -38,9 +33,8 @@ fn the_time_of_a_stage_is_made_least() {
     }
     // The control: what is measured are the kernel's turns, so that the search had something to find.
     let median = |at: usize| tried[at]["scenes"][0]["median"].as_f64().expect("ms");
-    assert!(
-        median(tried.len() - 1) > 1.3 * median(tried_values.iter().position(|v| *v == 256.0).expect("256"))
-    );
+    let best = tried_values.iter().position(|value| *value == 256.0).expect("256");
+    assert!(median(tried.len() - 1) > 3.0 * median(best));
     let kept = bench.kept();
     assert_eq!(kept.len(), 1, "{kept:?}");
     assert_eq!(found["kept"], kept[0].display().to_string());
@@ -53,7 +47,7 @@ fn values_of_lists_are_all_tried() {
     assert_eq!(values(&found), [600.0, 2000.0, 4000.0], "numbers rise");
     assert_eq!(found["chosen"], 600.0);
     assert_eq!(found["of"], "frame");
-    let (found, _) = bench.ok("tune POINT -p work --knob half --least time --stage work --repeats 6");
+    let (found, _) = bench.ok("tune POINT -p work --knob brief --least time --stage work --repeats 6");
     assert_eq!((&found["chosen"], &found["default"]), (&true.into(), &false.into()));
     let (found, _) = bench.ok("tune POINT -p work --knob order --least time --repeats 6");
     let names: Vec<&Value> = found["tried"].as_array().expect("tried").iter().map(|t| &t["value"]).collect();

@@ -8,7 +8,7 @@ fn bad_input_names_its_cause_and_keeps_nothing() {
     let cases = [
         ("-p work --knob tils --least time", "unknown-knob", "did you mean `tile`?"),
         ("-p work --knob order --least time --within 1..2", "not-a-number", "'back', 'forth'"),
-        ("-p work --knob half --least time --within 0..1", "not-a-number", "true or false"),
+        ("-p work --knob brief --least time --within 0..1", "not-a-number", "true or false"),
         ("-p work --knob tile --least time --within 0..100", "knob-out-of-range", "from 1 to 65536"),
         ("-p work --knob tile --least time --within 1.2..1.8", "no-values", "from 1 to 65536"),
         ("-p work --knob rounds --least time --within 1..2", "no-values", "600, 2000"),
@@ -52,7 +52,7 @@ fn a_tuning_that_is_killed_leaves_nothing() {
 fn a_folder_that_cannot_be_written_to_is_a_failure() {
     let bench = Bench::new();
     std::fs::write(bench.path("cache"), "a file, not a folder").expect("a file");
-    let output = bench.run("tune POINT -p work --knob half --least time --repeats 6");
+    let output = bench.run("tune POINT -p work --knob brief --least time --repeats 6");
     assert_eq!(output.status.code(), Some(1));
     let value: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
     assert_eq!(value["problems"][0]["code"], "cache-write");
