@@ -66,8 +66,13 @@ fn grid_voxel(placed: Placed, voxel: vec3f) -> vec3u {
     return vec3u(turn_back(placed.first + nearest_integers(voxel), placed.axis));
 }
 
+fn asked_about(placed: Placed, separability: u32) -> Asked {
+    return asked_of(placed.corners, placed.facing, separability == THIN);
+}
+
 fn prepared(placed: Placed, separability: u32) -> Overlap {
-    return overlap_of(placed.corners, placed.facing, separability == THIN, placed.size);
+    let asked = asked_about(placed, separability);
+    return overlap_of(asked, bounds_of(asked, placed.facing, placed.size), placed.size.z);
 }
 
 /// What the payload knows of it.
@@ -79,6 +84,35 @@ fn placed_surface(placed: Placed) -> Surface {
         vec3f(turn_back(placed.corners[2] + begin, placed.axis)) / f32(UNITS),
     );
     return surface_of(placed.triangle, corners);
+}
+
+/// Fills what is filled of a run from a voxel on, as much as the payload takes at once; returns how many voxels it
+/// went on.
+fn fill_some(placed: Placed, overlap: Overlap, surface: Surface, run: Run, voxel: vec3f) -> f32 {
+    var filled = is_sure(run, voxel.z);
+    // Rows of the payload are along its axis alone.
+    var length = select(1.0, surely_up_to(run) - voxel.z + 1.0, filled && placed.axis == BIT_AXIS);
+    if !filled {
+        filled = fills_after_all(overlap, run, voxel);
+    }
+    if filled {
+        length = f32(i32(add_row(surface, grid_voxel(placed, voxel), u32(nearest_integer(length)))));
+    }
+    return length;
+}
+
+/// One column of a triangle.
+fn fill_column(placed: Placed, overlap: Overlap, column: vec2f) {
+    let row = row_of(overlap, column.y);
+    if column.x < row.x.low || column.x > row.x.high {
+        return;
+    }
+    let run = run_of(overlap, row, column.x, column.y);
+    let surface = placed_surface(placed);
+    var z = run.low;
+    for (var k = 0; k <= placed.size.z && z <= run.high; k++) {
+        z += fill_some(placed, overlap, surface, run, vec3f(column, z));
+    }
 }
 
 /// All of a triangle, by the calling thread.
@@ -94,8 +128,7 @@ fn fill_columns(placed: Placed, separability: u32, low: vec2i, high: vec2i) {
     let last = vec2f(high);
     var row: Row;
     var last_x = -1.0;
-    var run: Range;
-    run.high = -1.0;
+    var run = no_run();
     // The next voxel; at first before the first row.
     var voxel = vec3f(0.0, f32(low.y) - 1.0, 0.0);
     // One loop through rows, columns and runs: threads whose triangles have other sizes wait less for each other than
@@ -104,16 +137,7 @@ fn fill_columns(placed: Placed, separability: u32, low: vec2i, high: vec2i) {
     let most = sides.x * sides.y * (placed.size.z + 1) + sides.y + 1;
     for (var k = 0; k < most; k++) {
         if voxel.z <= run.high {
-            let sure = is_sure(run, voxel.z);
-            var filled = sure;
-            if !sure {
-                filled = exactly_fills(overlap.asked, nearest_integers(voxel));
-            }
-            var length = select(1.0, run.surely_high - voxel.z + 1.0, sure);
-            if filled {
-                length = f32(i32(add_row(surface, grid_voxel(placed, voxel), u32(nearest_integer(length)))));
-            }
-            voxel.z += length;
+            voxel.z += fill_some(placed, overlap, surface, run, voxel);
         }
         if voxel.z > run.high {
             voxel.x += 1.0;
@@ -126,7 +150,7 @@ fn fill_columns(placed: Placed, separability: u32, low: vec2i, high: vec2i) {
                 voxel.x = max(row.x.low, f32(low.x));
                 last_x = min(row.x.high, last.x);
             }
-            run.high = -1.0;
+            run = no_run();
             if voxel.x <= last_x {
                 run = run_of(overlap, row, voxel.x, voxel.y);
                 voxel.z = run.low;

@@ -1,6 +1,9 @@
 // What payloads do that note of voxels only whether they are filled: the module that imports this brings the order of
 // the bits (lib/rows, lib/slices) and lib/mark.
 
+/// Voxels that `add_row` adds together.
+const MOST_AT_ONCE: u32 = 32u;
+
 /// Nothing more is known of a triangle.
 struct Surface {
     triangle: u32,

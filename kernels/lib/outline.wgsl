@@ -1,6 +1,5 @@
-// Voxelizing by the rasterizer: a triangle is drawn along the axis that its normal is nearest to, a pixel for each
-// column of voxels, so much larger that every column which it may meet has its centre inside; fragments then test
-// exactly.
+// Voxelizing by the rasterizer: a triangle is drawn along an axis, a pixel for each column of voxels, so much larger that
+// every column which it may meet has its centre inside; fragments then test exactly.
 //
 // Source: R 4.1.2, eq. 4.2 with the offsets of the edges as separability asks for: half the voxel's extent across the
 // edge. (As printed, with inward normals, it shrinks the triangle.) At a small angle the moved edges meet far away:
@@ -10,17 +9,6 @@
 // payload finds them at the point nearest to the voxel's centre, as for every other method.
 
 import lib/columns;
-
-struct Outlined {
-    @builtin(position) clip: vec4f,
-    /// Corners; w: the triangle, the axis, the signs of the normal in two bits each.
-    @location(0) @interpolate(flat) a: vec4i,
-    @location(1) @interpolate(flat) b: vec4i,
-    @location(2) @interpolate(flat) c: vec4i,
-    @location(3) @interpolate(flat) normal: vec3f,
-    @location(4) @interpolate(flat) first: vec3i,
-    @location(5) @interpolate(flat) size: vec3i,
-}
 
 /// Added to offsets, in pixels: the rasterizer snaps corners to 256ths, and single floats are off by less.
 const OUTLINE_MARGIN: f32 = 0.02;
@@ -113,51 +101,39 @@ fn outline_of(placed: Placed, thin: bool) -> Outline {
     return best;
 }
 
-/// A vertex of the triangle that is drawn for a triangle of the scene, into a square as wide as the grid's longest
-/// side.
-fn outline_vertex(triangle: u32, vertex: u32, separability: u32) -> Outlined {
-    let scene_placed = placed_of(triangle);
-    var out: Outlined;
-    if !scene_placed.meets {
-        out.clip = vec4f(2.0, 2.0, 0.5, 1.0);
-        return out;
+/// Where a vertex of what is drawn for a triangle lies, in a square as wide as the grid's longest side. Columns are along
+/// the triangle's z; where it does not meet the grid nothing is drawn.
+fn outline_vertex(placed: Placed, vertex: u32, separability: u32) -> vec4f {
+    if !placed.meets {
+        return vec4f(2.0, 2.0, 0.5, 1.0);
     }
-    let placed = placed_along(scene_placed, scene_placed.facing.axis);
     let outline = outline_of(placed, separability == THIN && any(placed.facing.signs != vec3i(0)));
     let side = f32(max(values.grid_size.x, max(values.grid_size.y, values.grid_size.z)));
     let at = 2.0 / side * (outline.corners[vertex] + vec2f(placed.first.xy)) - 1.0;
-    let signs = placed.facing.signs + 1;
-    out.clip = vec4f(at.x, -at.y, 0.5, 1.0);
-    out.a = vec4i(placed.corners[0], i32(triangle));
-    out.b = vec4i(placed.corners[1], i32(placed.axis));
-    out.c = vec4i(placed.corners[2], signs.x + 4 * signs.y + 16 * signs.z);
-    out.normal = placed.facing.normal;
-    out.first = placed.first;
-    out.size = placed.size;
-    return out;
+    return vec4f(at.x, -at.y, 0.5, 1.0);
 }
 
-/// Fills the column of a fragment.
-fn outline_fragment(in: Outlined, separability: u32) {
-    let p = floor(in.clip.xy) - vec2f(in.first.xy);
-    if any(p < vec2f(0.0)) || any(p > vec2f(in.size.xy)) {
-        return;
-    }
-    let signs = vec3i(in.c.w & 3, (in.c.w >> 2u) & 3, in.c.w >> 4u) - 1;
-    let corners = array(in.a.xyz, in.b.xyz, in.c.xyz);
-    // Columns are along the normal.
-    let facing = Facing(signs, in.normal, 2u);
-    let placed = Placed(u32(in.a.w), corners, facing, in.first, in.size, true, u32(in.b.w));
-    let overlap = prepared(placed, separability);
-    let row = row_of(overlap, p.y);
-    if p.x < row.x.low || p.x > row.x.high {
-        return;
-    }
-    let run = run_of(overlap, row, p.x, p.y);
-    let surface = placed_surface(placed);
-    for (var z = run.low; z <= run.high; z += 1.0) {
-        if fills(overlap, run, vec3f(p, z)) {
-            add_fragment(surface, grid_voxel(placed, vec3f(p, z)));
-        }
-    }
+/// `Placed` as vertices hand it on: corners; w: the triangle, its axis and its normal's, its signs; two bits each.
+fn packed_corners(placed: Placed) -> array<vec4i, 3> {
+    let signs = placed.facing.signs + 1;
+    let axes = placed.axis + 4u * placed.facing.axis;
+    let more = vec3i(i32(placed.triangle), i32(axes), signs.x + 4 * signs.y + 16 * signs.z);
+    let c = placed.corners;
+    return array(vec4i(c[0], more.x), vec4i(c[1], more.y), vec4i(c[2], more.z));
+}
+
+fn placed_by(corners: array<vec4i, 3>, normal: vec3f, first: vec3i, size: vec3i) -> Placed {
+    let c = corners;
+    let signs = vec3i(c[2].w & 3, (c[2].w >> 2u) & 3, c[2].w >> 4u) - 1;
+    let facing = Facing(signs, normal, u32(c[1].w) >> 2u);
+    return Placed(u32(c[0].w), array(c[0].xyz, c[1].xyz, c[2].xyz), facing, first, size, true, u32(c[1].w) & 3u);
+}
+
+/// The column of a pixel, from `placed.first`.
+fn column_at(clip: vec4f, placed: Placed) -> vec2f {
+    return floor(clip.xy) - vec2f(placed.first.xy);
+}
+
+fn is_column(p: vec2f, placed: Placed) -> bool {
+    return all(p >= vec2f(0.0)) && all(p <= vec2f(placed.size.xy));
 }

@@ -27,9 +27,16 @@ struct Range {
     surely_high: f32,
 }
 
-/// What lies between the three edges of a projection, along one of its axes, by the place `q` on the other: a component
-/// for each edge, which bounds one side. At least `low + low_slope·q`, at most `high + high_slope·q`; `doubt` further
-/// in surely.
+/// The three edges of a projection, each solved for a place on one of its axes by the place `q` on the other:
+/// `place + slope·q` bounds what may be, and what is further in by the size of `doubt` surely is. Doubt is positive
+/// where that is the least, negative where it is the greatest place.
+struct Sides {
+    place: vec3f,
+    slope: vec3f,
+    doubt: vec3f,
+}
+
+/// The same, ready for many places: at least `low + low_slope·q`, at most `high + high_slope·q`.
 struct Between {
     low: vec3f,
     low_slope: vec3f,
@@ -38,43 +45,42 @@ struct Between {
     doubt: vec3f,
 }
 
+/// A triangle's tests, solved.
+struct Bounds {
+    /// x, by y.
+    xy: Sides,
+    /// z, by y.
+    yz: Sides,
+    /// z, by x.
+    zx: Sides,
+    /// z within the slab of the plane at column (0, 0): least and greatest, then its slopes.
+    plane: vec4f,
+    plane_doubt: f32,
+}
+
 struct Overlap {
     asked: Asked,
-    /// x, by y.
     xy: Between,
-    /// z, by y.
     yz: Between,
-    /// z, by x.
     zx: Between,
-    /// z within the slab of the plane at column (0, 0), its slopes, and the doubt.
-    plane_low: f32,
-    plane_high: f32,
-    plane_slope: vec2f,
+    plane: vec4f,
     plane_doubt: f32,
     /// The greatest z that is asked for.
     last_z: f32,
 }
 
 /// Half-spaces `part·p + slope·q + rest ≥ 0`, solved for p.
-fn solved(part: vec3f, slope: vec3f, rest: vec3f, doubt: vec3f) -> Between {
+fn solved(part: vec3f, slope: vec3f, rest: vec3f, doubt: vec3f) -> Sides {
     let one = 1.0 / select(part, vec3f(LEAST_PART), part == vec3f(0.0));
-    let start = -rest * one;
-    let along = -slope * one;
-    let off = doubt * abs(one);
-    let is_low = one > vec3f(0.0);
-    return Between(
-        select(vec3f(-FAR), start - off, is_low),
-        select(vec3f(0.0), along, is_low),
-        select(start + off, vec3f(FAR), is_low),
-        select(along, vec3f(0.0), is_low),
-        2.0 * off,
-    );
+    // A doubt of zero would have no sign.
+    let off = max(doubt * abs(one), vec3f(1e-30)) * sign(one);
+    return Sides(-rest * one - off, -slope * one, 2.0 * off);
 }
 
 /// Half-planes of one projection. `u`, `v`: the corners' coordinates; `facing`: the sign that makes the edges' normals
 /// point inwards, 0 where the projection is a line (all tests then pass, and the others decide); `extent`: the greatest
 /// voxel that is asked for. Solved for v, or for u.
-fn between(u: vec3i, v: vec3i, facing: i32, thin: bool, extent: vec2i, for_u: bool) -> Between {
+fn sides_of(u: vec3i, v: vec3i, facing: i32, thin: bool, extent: vec2i, for_u: bool) -> Sides {
     let side = f32(UNITS);
     let at_u = vec3f(u);
     let at_v = vec3f(v);
@@ -93,38 +99,59 @@ fn between(u: vec3i, v: vec3i, facing: i32, thin: bool, extent: vec2i, for_u: bo
     return solved(b * side, a * side, rest, doubt);
 }
 
-/// Prepares a triangle whose corners are relative; voxels from 0 to `size` will be asked for.
-fn overlap_of(corners: array<vec3i, 3>, facing: Facing, thin: bool, size: vec3i) -> Overlap {
-    var out: Overlap;
-    out.asked = asked_of(corners, facing, thin);
-    let signs = out.asked.signs;
-    let c = out.asked.corners;
+/// Solves the tests of a triangle whose corners are relative; voxels from 0 to `size` will be asked for.
+fn bounds_of(asked: Asked, facing: Facing, size: vec3i) -> Bounds {
+    var out: Bounds;
+    let signs = asked.signs;
+    let c = asked.corners;
     let x = vec3i(c[0].x, c[1].x, c[2].x);
     let y = vec3i(c[0].y, c[1].y, c[2].y);
     let z = vec3i(c[0].z, c[1].z, c[2].z);
-    out.xy = between(x, y, signs.z, out.asked.thin, size.xy, true);
-    out.yz = between(y, z, signs.x, out.asked.thin, size.yz, false);
-    out.zx = between(z, x, signs.y, out.asked.thin, size.zx, true);
+    out.xy = sides_of(x, y, signs.z, asked.thin, size.xy, true);
+    out.yz = sides_of(y, z, signs.x, asked.thin, size.yz, false);
+    out.zx = sides_of(z, x, signs.y, asked.thin, size.zx, true);
     // The normal with 1 for its largest component; of voxel v, up·v lies between these two.
-    let up = facing.normal * dot(facing.normal, vec3f(out.asked.lead));
+    let up = facing.normal * dot(facing.normal, vec3f(asked.lead));
     let corner = vec3f(c[0]) / f32(UNITS);
     let place = dot(up, corner);
     let middle = 0.5 * (up.x + up.y + up.z - 1.0);
-    let least = select(place - dot(max(up, vec3f(0.0)), vec3f(1.0)), place - middle - 1.0, out.asked.thin);
-    let most = select(place - dot(min(up, vec3f(0.0)), vec3f(1.0)), place - middle, out.asked.thin);
+    let least = select(place - dot(max(up, vec3f(0.0)), vec3f(1.0)), place - middle - 1.0, asked.thin);
+    let most = select(place - dot(min(up, vec3f(0.0)), vec3f(1.0)), place - middle, asked.thin);
     let far = abs(corner) + vec3f(size) + 2.0;
     // The normal may be off by two DOUBTs (lib/facing: one of its own, one of its largest component); as much again is for
     // what is computed with it.
     let doubt = 4.0 * DOUBT * (far.x + far.y + far.z);
     let one = 1.0 / select(up.z, LEAST_PART, up.z == 0.0);
     let off = doubt * abs(one);
+    let low = select(most, least, one > 0.0) * one - off;
+    let high = select(least, most, one > 0.0) * one + off;
     // Without area there is no plane.
-    out.plane_low = select(select(most, least, one > 0.0) * one - off, -FAR, out.asked.flat);
-    out.plane_high = select(select(least, most, one > 0.0) * one + off, FAR, out.asked.flat);
-    out.plane_slope = -up.xy * one;
-    out.plane_doubt = 2.0 * off;
-    out.last_z = f32(size.z);
+    out.plane = select(vec4f(low, high, -up.xy * one), vec4f(-FAR, FAR, 0.0, 0.0), asked.flat);
+    out.plane_doubt = select(2.0 * off, 0.0, asked.flat);
     return out;
+}
+
+fn between(sides: Sides) -> Between {
+    let is_low = sides.doubt > vec3f(0.0);
+    return Between(
+        select(vec3f(-FAR), sides.place, is_low),
+        select(vec3f(0.0), sides.slope, is_low),
+        select(sides.place, vec3f(FAR), is_low),
+        select(sides.slope, vec3f(0.0), is_low),
+        abs(sides.doubt),
+    );
+}
+
+fn overlap_of(asked: Asked, bounds: Bounds, last_z: i32) -> Overlap {
+    return Overlap(
+        asked,
+        between(bounds.xy),
+        between(bounds.yz),
+        between(bounds.zx),
+        bounds.plane,
+        bounds.plane_doubt,
+        f32(last_z),
+    );
 }
 
 fn range_of(b: Between, q: f32) -> Range {
@@ -166,25 +193,48 @@ fn row_of(o: Overlap, y: f32) -> Row {
     return Row(whole_range(range_of(o.xy, y)), both(range_of(o.yz, y), Range(0.0, o.last_z, 0.0, o.last_z)));
 }
 
+/// What a triangle may fill of a column: voxels without gaps.
+struct Run {
+    /// First and last one; whole numbers.
+    low: f32,
+    high: f32,
+    /// From where to where the edges' tests surely pass, and that of the plane.
+    edges: vec2f,
+    plane: vec2f,
+}
+
+fn no_run() -> Run {
+    return Run(0.0, -1.0, vec2f(0.0), vec2f(0.0));
+}
+
 /// The voxels that the triangle fills of column (x, y).
-fn run_of(o: Overlap, row: Row, x: f32, y: f32) -> Range {
-    let shift = o.plane_slope.x * x + o.plane_slope.y * y;
-    let low = o.plane_low + shift;
-    let high = o.plane_high + shift;
-    let plane = Range(low, high, low + o.plane_doubt, high - o.plane_doubt);
-    var run = whole_range(both(both(row.z, range_of(o.zx, x)), plane));
-    // Where it may not meet the column it fills no voxel surely.
-    if x < row.x.surely_low || x > row.x.surely_high {
-        run.surely_high = -1.0;
-    }
-    return run;
+fn run_of(o: Overlap, row: Row, x: f32, y: f32) -> Run {
+    let plane = o.plane.xy + (o.plane.z * x + o.plane.w * y);
+    let edges = both(row.z, range_of(o.zx, x));
+    // Where it may not meet the column it surely passes no edge's test.
+    let met = x >= row.x.surely_low && x <= row.x.surely_high;
+    return Run(
+        ceil(max(edges.low, plane.x)),
+        floor(min(edges.high, plane.y)),
+        vec2f(edges.surely_low, select(-1.0, edges.surely_high, met)),
+        vec2f(plane.x + o.plane_doubt, plane.y - o.plane_doubt),
+    );
 }
 
-fn is_sure(run: Range, z: f32) -> bool {
-    return z >= run.surely_low && z <= run.surely_high;
+/// The last voxel of a run that it surely fills, if it surely fills that.
+fn surely_up_to(run: Run) -> f32 {
+    return floor(min(run.edges.y, run.plane.y));
 }
 
-/// Whether the triangle fills a voxel of a run.
-fn fills(o: Overlap, run: Range, voxel: vec3f) -> bool {
-    return is_sure(run, voxel.z) || exactly_fills(o.asked, nearest_integers(voxel));
+/// Whether the triangle surely fills a voxel of a run.
+fn is_sure(run: Run, z: f32) -> bool {
+    return z >= max(run.edges.x, run.plane.x) && z <= min(run.edges.y, run.plane.y);
+}
+
+/// Whether it fills a voxel of a run, where that is not sure.
+fn fills_after_all(o: Overlap, run: Run, voxel: vec3f) -> bool {
+    let z = voxel.z;
+    let asked_edges = z < run.edges.x || z > run.edges.y;
+    let asked_plane = z < run.plane.x || z > run.plane.y;
+    return exactly_fills(o.asked, nearest_integers(voxel), asked_edges, asked_plane);
 }

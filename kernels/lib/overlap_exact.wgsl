@@ -79,8 +79,7 @@ fn plane_meets(asked: Asked, voxel: vec3i) -> bool {
     return side_of(n, behind) <= 0 && side_of(n, before) >= 0;
 }
 
-/// Whether the triangle fills a voxel of its bounds.
-fn exactly_fills(asked: Asked, voxel: vec3i) -> bool {
+fn inside_all_edges(asked: Asked, voxel: vec3i) -> bool {
     for (var i = 0u; i < 3u; i++) {
         let begin = asked.corners[i];
         let end = asked.corners[select(i + 1u, 0u, i == 2u)];
@@ -90,5 +89,13 @@ fn exactly_fills(asked: Asked, voxel: vec3i) -> bool {
             return false;
         }
     }
-    return asked.flat || plane_meets(asked, voxel);
+    return true;
+}
+
+/// Whether the triangle fills a voxel of its bounds, by the tests that are asked for.
+fn exactly_fills(asked: Asked, voxel: vec3i, asked_edges: bool, asked_plane: bool) -> bool {
+    if asked_edges && !inside_all_edges(asked, voxel) {
+        return false;
+    }
+    return !asked_plane || asked.flat || plane_meets(asked, voxel);
 }

@@ -41,7 +41,7 @@ fn triangle_meets(corners: array<vec3i, 3>, voxel: vec3i) -> bool {
     if any(low > vec3i(0)) || any(high < vec3i(0)) {
         return false;
     }
-    return exactly_fills(asked_of(p, facing_of(p), false), vec3i(0));
+    return exactly_fills(asked_of(p, facing_of(p), false), vec3i(0), true, true);
 }
 
 /// Adds the point of `triangle` at a place of the atlas, if it lies in the grid.
