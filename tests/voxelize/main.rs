@@ -20,6 +20,7 @@ mod properties;
 mod random;
 mod scans;
 mod slices;
+mod snapping;
 mod solid;
 mod sums;
 #[path = "../support/scenes.rs"]
