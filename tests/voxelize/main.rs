@@ -3,6 +3,7 @@
 //! also made wrong on purpose, which must show.
 
 mod atlas;
+mod choices;
 mod compact;
 mod corners;
 mod crowds;
