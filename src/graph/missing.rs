@@ -7,9 +7,12 @@ use crate::plan::{Module, Plan, with_module};
 use crate::problem::{Place, Problem, Problems};
 use std::collections::BTreeMap;
 
-/// What is wanted, by the name behind `role/` and the parts whose modules have it.
+/// A name behind `role/`, and the parts whose modules there have what is wanted.
+type Bringers = (String, Vec<String>);
+
+/// What is wanted and where, by who would bring it.
 #[derive(Debug, Default)]
-pub struct Missing(BTreeMap<(String, Vec<String>), Vec<(String, Place)>>);
+pub struct Missing(BTreeMap<Bringers, Vec<(String, Place)>>);
 
 impl Missing {
     /// Takes what is missing out of the problems of a stage's kernel; the others are handed back.
