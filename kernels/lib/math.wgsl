@@ -50,3 +50,8 @@ fn frame_around(n: vec3f) -> mat3x3f {
 fn outward(normal: vec3f, face_normal: vec3f, otherwise: vec3f) -> vec3f {
     return select(otherwise, normal, dot(normal, face_normal) > 0.0);
 }
+
+/// The z of the cross product: twice the area between them, positive if `b` is counterclockwise of `a`.
+fn cross_2(a: vec2f, b: vec2f) -> f32 {
+    return a.x * b.y - a.y * b.x;
+}

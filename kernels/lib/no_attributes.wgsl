@@ -1,6 +1,8 @@
 // What payloads do that note of voxels only whether they are filled: the module that imports this brings the order of
 // the bits (lib/rows, lib/slices) and lib/mark.
 
+import lib/piece;
+
 /// Voxels that `add_row` adds together.
 const MOST_AT_ONCE: u32 = 32u;
 
@@ -11,6 +13,10 @@ struct Surface {
 
 fn surface_of(triangle: u32, corners: array<vec3f, 3>) -> Surface {
     return Surface(triangle);
+}
+
+fn add_piece(surface: Surface, voxel: vec3u, piece: Piece) {
+    add_fragment(surface, voxel);
 }
 
 fn add_fragment(surface: Surface, voxel: vec3u) {

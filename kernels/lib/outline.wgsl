@@ -17,10 +17,6 @@ const LEAST_SINE: f32 = 0.05;
 /// In pixels. Larger triangles are drawn as their bounds.
 const LONGEST_OUTLINE: f32 = 4096.0;
 
-fn cross_2(a: vec2f, b: vec2f) -> f32 {
-    return a.x * b.y - a.y * b.x;
-}
-
 fn direction_of(v: vec2f) -> vec2f {
     return v / max(length(v), 1e-12);
 }

@@ -1,5 +1,5 @@
-// Where a voxel's sums lie in `sums`: word 0 of each voxel's is the number of fragments, then come three words for each
-// attribute, in fixed point (lib/fixed). Emission is there only where the scene emits.
+// Where a voxel's sums lie in `sums`: word 0 of each voxel's is the sum of the weights of its fragments, then come three
+// words for each attribute, in fixed point (lib/fixed). Emission is there only where the scene emits.
 
 const SUM_ALBEDO: u32 = 1u;
 const SUM_NORMAL: u32 = 4u;

@@ -1,12 +1,11 @@
-// What a payload can know of a fragment (one triangle in one voxel): attributes of the triangle's point nearest to the
-// voxel's centre, images filtered to the width of a voxel.
+// What a payload can know of a fragment (one triangle in one voxel), images filtered to the width of a voxel.
 //
 // Normals are those of the corners, not of normal maps: what a map shows is finer than a voxel.
 // Reads per triangle 3 corners (ca. 400 B); per fragment 8 texels (×2 where it emits) for textured materials.
 
 import lib/grid;
 import lib/material;
-import lib/nearest;
+import lib/piece;
 import lib/scene;
 
 @if(scene.emissive)
@@ -56,8 +55,8 @@ fn surface_of(triangle: u32, corners: array<vec3f, 3>) -> Surface {
     return Surface(corners, face, uv_footprint(face));
 }
 
-fn fragment_of(surface: Surface, voxel: vec3u) -> Fragment {
-    let weights = nearest_weights(surface.corners, vec3f(voxel) + 0.5);
+fn fragment_of(surface: Surface, voxel: vec3u, piece: Piece) -> Fragment {
+    let weights = piece.weights;
     let c = surface.face.corners;
     let uv = weights.x * c[0].uv + weights.y * c[1].uv + weights.z * c[2].uv;
     var base = base_color_at(surface.face.material, uv, surface.footprint);
@@ -68,12 +67,11 @@ fn fragment_of(surface: Surface, voxel: vec3u) -> Fragment {
         weights.x * c[0].normal + weights.y * c[1].normal + weights.z * c[2].normal,
         surface.face.normal,
     );
-    let p = weights.x * surface.corners[0] + weights.y * surface.corners[1] + weights.z * surface.corners[2];
     var out: Fragment;
     out.hole = is_hole(surface.face.material, base.a);
     out.albedo = base.rgb;
     out.normal = n;
-    out.within = clamp(p - vec3f(voxel), vec3f(0.0), vec3f(1.0));
+    out.within = clamp(piece.middle - vec3f(voxel), vec3f(0.0), vec3f(1.0));
     @if(scene.emissive) {
         out.emission = emission_at(surface.face.material, uv, surface.footprint) / max(scene.max_emission, 1e-30);
     }

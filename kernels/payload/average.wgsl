@@ -9,7 +9,6 @@
 import lib/fill;
 import lib/grid;
 import lib/packed_words;
-import lib/surface;
 import lib/voxel_by_voxel;
 
 var<storage, read_write> filled: array<atomic<u32>>;
@@ -52,8 +51,8 @@ fn average_emission(at: u32, value: vec3u) {
     }
 }
 
-fn add_fragment(surface: Surface, voxel: vec3u) {
-    let fragment = fragment_of(surface, voxel);
+fn add_piece(surface: Surface, voxel: vec3u, piece: Piece) {
+    let fragment = fragment_of(surface, voxel, piece);
     if fragment.hole {
         return;
     }

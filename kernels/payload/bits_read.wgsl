@@ -1,8 +1,3 @@
 // Module behind `role/voxels` of the payload `bits`.
 
 import lib/is_filled;
-
-/// 1 where a fragment lies: they are not counted.
-fn fragment_count(voxel: vec3u) -> u32 {
-    return u32(is_filled(voxel));
-}

@@ -44,8 +44,8 @@ fn take_slot(number: u32, slots: u32) -> u32 {
     return NO_SLOT;
 }
 
-fn add_fragment(surface: Surface, voxel: vec3u) {
-    let fragment = fragment_of(surface, voxel);
+fn add_piece(surface: Surface, voxel: vec3u, piece: Piece) {
+    let fragment = fragment_of(surface, voxel, piece);
     if fragment.hole {
         return;
     }
@@ -55,7 +55,7 @@ fn add_fragment(surface: Surface, voxel: vec3u) {
     if slot == NO_SLOT {
         mark_filled(number);
         atomicAdd(&counters.fragments_without_room, 1u);
-    } else if add_to_sums(sums_of_slot(slot, slots), fragment) == 0u {
+    } else if add_to_sums(sums_of_slot(slot, slots), fragment, piece.area) == 0u {
         mark_filled(number);
     }
 }

@@ -80,11 +80,3 @@ fn sum_at(place: Place, word: u32) -> u32 {
         return still_sum_at(place, word);
     }
 }
-
-fn fragments_at(place: Place) -> u32 {
-    @if(scene.moving) {
-        return min(still_sum_at(place, 0u), MOST_TERMS) + min(moving_sum_at(place, 0u), MOST_TERMS);
-    } @else {
-        return min(still_sum_at(place, 0u), MOST_TERMS);
-    }
-}

@@ -9,7 +9,6 @@ import lib/color;
 import lib/fill;
 import lib/grid;
 import lib/packed_words;
-import lib/surface;
 import lib/voxel_by_voxel;
 
 var<storage, read_write> filled: array<atomic<u32>>;
@@ -21,8 +20,8 @@ fn byte_of_luminance(color: vec3f) -> u32 {
     return bytes_of(vec3f(luminance(color))).x;
 }
 
-fn add_fragment(surface: Surface, voxel: vec3u) {
-    let fragment = fragment_of(surface, voxel);
+fn add_piece(surface: Surface, voxel: vec3u, piece: Piece) {
+    let fragment = fragment_of(surface, voxel, piece);
     if fragment.hole {
         return;
     }

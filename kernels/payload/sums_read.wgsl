@@ -23,11 +23,3 @@ fn sum_at(place: Place, word: u32) -> u32 {
         return sums[place + word];
     }
 }
-
-fn fragments_at(place: Place) -> u32 {
-    @if(scene.moving) {
-        return min(sums[place], MOST_TERMS) + min(moving_sums[place], MOST_TERMS);
-    } @else {
-        return min(sums[place], MOST_TERMS);
-    }
-}

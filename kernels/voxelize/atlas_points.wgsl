@@ -8,6 +8,7 @@
 
 import lib/atlas;
 import lib/grid;
+import lib/math;
 import lib/overlap_exact;
 import lib/unit_corners;
 import role/payload;
@@ -18,16 +19,19 @@ const PLACE_DOUBT: f32 = 1.9073486e-6;
 /// Numbers of triangles and 1; 0 where there is none.
 var triangle_map: texture_2d<u32>;
 
-/// Weights of a triangle's corners in the point of it that is at `place`, or next to it.
-fn atlas_weights(triangle: u32, place: vec2f) -> vec3f {
+/// The point of a triangle that is at `place`, or next to it; and the triangle's area per area of the atlas.
+/// `corners`: in voxels.
+fn atlas_piece(triangle: u32, corners: array<vec3f, 3>, place: vec2f) -> Piece {
     let a = atlas_corner(triangle, 0u);
     let u = atlas_corner(triangle, 1u) - a;
     let v = atlas_corner(triangle, 2u) - a;
     let p = place - a;
-    let area = u.x * v.y - u.y * v.x;
-    let b = clamp((p.x * v.y - p.y * v.x) / max(area, 1e-30), 0.0, 1.0);
-    let c = clamp((u.x * p.y - u.y * p.x) / max(area, 1e-30), 0.0, 1.0 - b);
-    return vec3f(1.0 - b - c, b, c);
+    let area = max(cross_2(u, v), 1e-30);
+    let b = clamp(cross_2(p, v) / area, 0.0, 1.0);
+    let c = clamp(cross_2(u, p) / area, 0.0, 1.0 - b);
+    let point = (1.0 - b - c) * corners[0] + b * corners[1] + c * corners[2];
+    let whole = length(cross(corners[1] - corners[0], corners[2] - corners[0]));
+    return Piece(whole / area, point, vec3f(1.0 - b - c, b, c));
 }
 
 /// Whether a triangle, its corners in units, meets the voxel; exact.
@@ -44,8 +48,8 @@ fn triangle_meets(corners: array<vec3i, 3>, voxel: vec3i) -> bool {
     return exactly_fills(asked_of(p, facing_of(p), false), vec3i(0), true, true);
 }
 
-/// Adds the point of `triangle` at a place of the atlas, if it lies in the grid.
-fn add_point(triangle: u32, place: vec2f) {
+/// Adds the point of `triangle` at a place of the atlas, if it lies in the grid, for a texel of this area of the atlas.
+fn add_point(triangle: u32, place: vec2f, texel: f32) {
     let corners = unit_corners(triangle);
     // From the first corner's voxel on, so that little is lost.
     let first = voxel_of(corners[0]);
@@ -55,8 +59,10 @@ fn add_point(triangle: u32, place: vec2f) {
         placed[i] = vec3f(corners[i]) / f32(UNITS);
         near[i] = vec3f(corners[i] - first * UNITS) / f32(UNITS);
     }
-    let weights = atlas_weights(triangle, place);
-    let point = weights.x * near[0] + weights.y * near[1] + weights.z * near[2];
+    var piece = atlas_piece(triangle, near, place);
+    piece.area *= texel;
+    let point = piece.middle;
+    piece.middle += vec3f(first);
     let voxel = first + vec3i(floor(point));
     if any(voxel < vec3i(0)) || any(voxel >= vec3i(values.grid_size)) {
         return;
@@ -65,7 +71,7 @@ fn add_point(triangle: u32, place: vec2f) {
     let doubt = PLACE_DOUBT * (1.0 + max(largest.x, max(largest.y, largest.z)));
     let doubtful = any(abs(fract(point) - 0.5) > vec3f(0.5 - doubt));
     if !doubtful || triangle_meets(corners, voxel) {
-        add_fragment(surface_of(triangle, placed), vec3u(voxel));
+        add_piece(surface_of(triangle, placed), vec3u(voxel), piece);
     }
 }
 
@@ -77,6 +83,7 @@ fn main(@builtin(global_invocation_id) id: vec3u) {
     }
     let number = textureLoad(triangle_map, id.xy, 0).x;
     if number > 0u {
-        add_point(number - 1u, (vec2f(id.xy) + 0.5) / vec2f(size));
+        let texel = 1.0 / vec2f(size);
+        add_point(number - 1u, (vec2f(id.xy) + 0.5) * texel, texel.x * texel.y);
     }
 }

@@ -26,7 +26,10 @@ fn render_and_profile_use_it_and_say_so() {
         assert_eq!(record["knobs"]["brief"], true);
         let used = record["tuned"].as_object().expect("what is used");
         assert_eq!(used.len(), 1);
-        assert_eq!((&used["brief"]["value"], &used["brief"]["scene"]), (&json!(true), &json!("cornell-point")));
+        assert_eq!(
+            (&used["brief"]["value"], &used["brief"]["scene"]),
+            (&json!(true), &json!("cornell-point"))
+        );
         assert!(used["brief"]["when"].as_str().is_some_and(|when| when.ends_with('Z')), "{used:?}");
         assert!(told.contains("tuned: work, brief=true, found on cornell-point"), "{told}");
         let (record, told) = bench.ok(&format!("{command} --tuned --set brief=false"));

@@ -6,9 +6,11 @@ use crate::random::{Region, hardened};
 use crate::support::scenes;
 use crate::voxelizer::{Grid, METHODS, Way, counted, run};
 use fastrand::Rng;
+use glam::DVec3;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use voxgi::expr::Value;
+use voxgi::frame::Image;
 use voxgi::library::Library;
 use voxgi::record;
 use voxgi::scene::atlas::Atlas;
@@ -29,23 +31,27 @@ fn loaded(path: &Path) -> Scene {
     unwrapped(scene::load(path).expect("the scene"))
 }
 
-/// For each voxel how many points the atlas voxelizer puts there.
+/// Whether the atlas voxelizer fills each voxel.
 pub fn through_atlas(scene: &Scene, grid: &Grid, texels_per_voxel: f64) -> Vec<u32> {
     through(scene, grid, "payload/sums", texels_per_voxel)
 }
 
-/// The same as a payload counts them.
+/// The same with another payload.
 pub fn through(scene: &Scene, grid: &Grid, payload: &str, texels_per_voxel: f64) -> Vec<u32> {
+    let image = shown("occupancy", scene, grid, payload, texels_per_voxel);
+    image.data.into_iter().map(|filled| filled as u32).collect()
+}
+
+/// The picture that a pipeline of these tests makes, of its own name.
+fn shown(pipeline: &str, scene: &Scene, grid: &Grid, payload: &str, texels_per_voxel: f64) -> Image {
     let mut sets: Vec<_> =
         grid.knobs.iter().map(|(knob, value)| ((*knob).to_owned(), value.clone())).collect();
     sets.push(("texels_per_voxel".to_owned(), format!("{texels_per_voxel:?}")));
     let parts = [("grid", grid.part), ("payload", payload), ("voxelize", "voxelize/atlas")];
     let parts = parts.map(|(role, part)| (role.to_owned(), part.to_owned())).to_vec();
-    let request =
-        Request { pipeline: "occupancy".to_owned(), size: [8, 8], sets, parts, ..Request::default() };
-    let image = run(&request, "occupancy", scene)
-        .unwrap_or_else(|problems| panic!("{:?}", problems.iter().collect::<Vec<_>>()));
-    image.data.into_iter().map(|count| count as u32).collect()
+    let request = Request { pipeline: pipeline.to_owned(), size: [8, 8], sets, parts, ..Request::default() };
+    run(&request, pipeline, scene)
+        .unwrap_or_else(|problems| panic!("{:?}", problems.iter().collect::<Vec<_>>()))
 }
 
 /// What the other voxelizers fill.
@@ -85,6 +91,34 @@ fn points_lie_in_voxels_that_triangles_touch() {
         assert_eq!(beyond(&found, &touched), 0, "{kind}");
         assert!(filled(&found) * 100 > filled(&touched) * least, "{kind}: most that has an area is found");
         assert!(beyond(&found, &thin) > 100, "a control: not all of them are of the thin set");
+    }
+}
+
+/// The weights of all points together are the area of what is voxelized, for each triangle as for all.
+#[test]
+fn weights_of_points_are_their_share_of_the_surface() {
+    let lattice = Lattice::cube(32);
+    let mut rng = Rng::with_seed(6);
+    let region = Region::scene(&lattice);
+    for reach in [4, 20] {
+        let triangles = region.triangles(&mut rng, 300, reach * VOXEL, 1);
+        let scene = unwrapped(lattice.scene(&lattice.fixed(&triangles)));
+        // Those that fix the grid lie in its corners.
+        let all = snapped(&lattice.fixed(&triangles));
+        let area: f64 = all
+            .iter()
+            .map(|t| {
+                let [a, b, c] = t.map(|p| DVec3::from_array(p.map(|x| x as f64 / VOXEL as f64)));
+                0.5 * (b - a).cross(c - a).length()
+            })
+            .sum();
+        for texels in [2.0, 4.0] {
+            let words = shown("words", &scene, &lattice.grid, "payload/sums", texels).bytes;
+            let word = |at: usize| u32::from_le_bytes(words[4 * at..4 * at + 4].try_into().expect("a word"));
+            let weights: f64 = (0..words.len() / 40).map(|voxel| f64::from(word(10 * voxel)) / 65536.0).sum();
+            println!("triangles within {reach} voxels, {texels} texels: {weights:.3} of {area:.3}");
+            assert!((weights / area - 1.0).abs() < 0.005, "{weights} of {area}");
+        }
     }
 }
 

@@ -17,6 +17,7 @@ mod meshes;
 mod model;
 mod oracle;
 mod payloads;
+mod pieces;
 mod properties;
 mod random;
 mod scans;

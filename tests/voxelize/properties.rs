@@ -7,7 +7,7 @@ use crate::model::{Model, Part};
 use crate::oracle::{Point, Rule, Triangle, VOXEL, differences, number};
 use crate::random::{Region, hardened};
 use crate::sums::Sums;
-use crate::voxelizer::{Grid, METHODS, Method, Way, counted};
+use crate::voxelizer::{COUNT, Grid, METHODS, Method, Way, counted};
 use fastrand::Rng;
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
@@ -201,7 +201,7 @@ fn a_full_queue_loses_nothing() {
         .collect();
     let scene = lattice.scene(&lattice.fixed(&triangles));
     let counts = METHODS.map(|method| {
-        let way = Way { method, payload: "payload/sums", rule: Rule::Thin };
+        let way = Way { method, payload: COUNT, rule: Rule::Thin };
         counted(&scene, &lattice.grid, &way)
     });
     assert!(counts[0].iter().max() > Some(&3), "triangles meet in voxels");

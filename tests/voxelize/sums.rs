@@ -5,8 +5,8 @@ use crate::voxelizer::{Grid, Method, Way, picture};
 use glam::DVec3;
 use voxgi::scene::Scene;
 
-/// Words of a voxel: fragments, then three each of albedo, normal and position, in fixed point.
-pub const WORDS: usize = 10;
+/// Words of a voxel: weights, in 65536ths of a voxel's face, then three each of albedo, normal and position, in fixed point.
+const WORDS: usize = 10;
 
 /// All words of a grid.
 #[derive(Clone, PartialEq, Eq)]
@@ -37,16 +37,15 @@ impl Sums {
         std::array::from_fn(|i| self.words[first + i])
     }
 
-    /// Of a voxel with at most 32767 fragments, and at least one.
+    /// Of a voxel with fragments that is not full.
     pub fn means(&self, voxel: Point) -> Means {
         let words = self.voxel(voxel);
-        let count = f64::from(words[0]);
-        let unsigned =
-            |at: usize| DVec3::from_array([0, 1, 2].map(|i| f64::from(words[at + i]) / 65536.0)) / count;
-        let signed = |i: usize| f64::from(words[4 + i].cast_signed()) / 32768.0;
+        let weights = f64::from(words[0]);
+        let unsigned = |at: usize| DVec3::from_array([0, 1, 2].map(|i| f64::from(words[at + i]))) / weights;
+        let signed = |i: usize| 2.0 * f64::from(words[4 + i].cast_signed()) / weights;
         Means {
             albedo: unsigned(1),
-            normal: DVec3::new(signed(0), signed(1), signed(2)) / count,
+            normal: DVec3::new(signed(0), signed(1), signed(2)),
             within: unsigned(7),
         }
     }

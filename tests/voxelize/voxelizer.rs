@@ -1,4 +1,4 @@
-//! The voxelizers, run in-process, each with both payloads.
+//! The voxelizers, run in-process, with payloads of the program and one that counts.
 
 use crate::lattice::Lattice;
 use crate::oracle::{self, Rule, Ties, Triangle};
@@ -53,6 +53,11 @@ pub fn gpu() -> &'static Gpu {
     })
 }
 
+/// The payload of these tests that counts the fragments of each voxel.
+pub const COUNT: &str = "payload/count";
+/// Of the methods, one of each way to go through rows of bits.
+const ROWS_DIFFER: [&str; 2] = ["voxelize/triangles", "voxelize/hybrid"];
+
 /// A grid, as the program is told of it.
 #[derive(Clone, Debug)]
 pub struct Grid {
@@ -104,9 +109,10 @@ pub fn run(request: &Request, shown: &str, scene: &Scene) -> Result<Image, Probl
     Ok(frame.read(gpu(), &reference)?)
 }
 
-/// How many triangles fill each voxel, as the voxelizer says; at most 1 with the payload of bits.
+/// How often the voxelizer gave each voxel to [`COUNT`]; of other payloads whether it is filled.
 pub fn counted(scene: &Scene, grid: &Grid, way: &Way) -> Vec<u32> {
-    let image = picture("occupancy", "occupancy", scene, grid, way);
+    let pipeline = if way.payload == COUNT { "counted" } else { "occupancy" };
+    let image = picture(pipeline, "occupancy", scene, grid, way);
     let [x, y, z] = grid.size;
     assert_eq!([i64::from(image.width), i64::from(image.height)], [x, y * z], "{grid:?}");
     image.data.into_iter().map(|count| count as u32).collect()
@@ -133,8 +139,9 @@ impl Case<'_> {
             assert!(oracle::filled(exact) > 0, "{}: nothing is filled", self.name);
             let bits: Vec<u32> = exact.iter().map(|count| u32::from(*count > 0)).collect();
             for method in METHODS {
-                let by_bits = (method == METHODS[0]).then_some(("payload/bits", &bits));
-                for (payload, exact) in [("payload/sums", exact)].into_iter().chain(by_bits) {
+                // Bits are written in rows, and what is drawn for them is drawn along these.
+                let by_bits = ROWS_DIFFER.contains(&method.part).then_some(("payload/bits", &bits));
+                for (payload, exact) in [(COUNT, exact)].into_iter().chain(by_bits) {
                     let way = Way { method, payload, rule };
                     let counted = counted(self.scene, self.grid, &way);
                     self.agree(&counted, exact, &triangles, &way);

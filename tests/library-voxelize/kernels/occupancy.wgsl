@@ -1,5 +1,4 @@
-// For tests: the number of fragments in each voxel, as the payload counts them. Voxel (x, y, z) is pixel
-// (x, y + z · the grid's size along y).
+// For tests: which voxels are filled, 1 or 0. Voxel (x, y, z) is pixel (x, y + z · the grid's size along y).
 // Reads a voxel, writes a texel.
 
 import lib/grid;
@@ -11,6 +10,6 @@ var occupancy: texture_storage_2d<r32float, write>;
 fn main(@builtin(global_invocation_id) id: vec3u) {
     if all(id.xy < textureDimensions(occupancy)) {
         let voxel = vec3u(id.x, id.y % values.grid_size.y, id.y / values.grid_size.y);
-        textureStore(occupancy, id.xy, vec4f(f32(fragment_count(voxel)), 0.0, 0.0, 1.0));
+        textureStore(occupancy, id.xy, vec4f(f32(u32(is_filled(voxel))), 0.0, 0.0, 1.0));
     }
 }
