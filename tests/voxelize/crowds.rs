@@ -68,7 +68,8 @@ fn ten_thousand_triangles_in_one_voxel() {
     let (some, others) = triangles.split_at(4_000);
     let scene = lattice.loaded(&model(&lattice, &[(some, colors[0]), (others, colors[1])]));
     for rule in Rule::BOTH {
-        let meets = |t: &&Triangle| oracle::voxels(t, lattice.grid.size, rule, Ties::Count).count() == 1;
+        let meets =
+            |t: &&Triangle| oracle::voxels(t, lattice.grid.size, VOXEL, rule, Ties::Count).count() == 1;
         let of = |all: &[Triangle]| all.iter().filter(meets).copied().collect::<Vec<_>>();
         let crowds = [(of(some), colors[0]), (of(others), colors[1])];
         let count = (crowds[0].0.len() + crowds[1].0.len()) as u32;

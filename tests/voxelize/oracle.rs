@@ -149,10 +149,16 @@ fn center(voxel: Point, side: i64) -> Point {
     voxel.map(|i| i * side + side / 2)
 }
 
-/// The voxels of a grid that a triangle fills.
-pub fn voxels(triangle: &Triangle, size: Point, rule: Rule, ties: Ties) -> impl Iterator<Item = Point> {
-    around(triangle, size, VOXEL, rule.beyond())
-        .filter(move |voxel| fills(triangle, center(*voxel, VOXEL), HALF, rule, ties))
+/// The voxels of a grid that a triangle fills, where a voxel's side is `side` units.
+pub fn voxels(
+    triangle: &Triangle,
+    size: Point,
+    side: i64,
+    rule: Rule,
+    ties: Ties,
+) -> impl Iterator<Item = Point> {
+    around(triangle, size, side, rule.beyond())
+        .filter(move |voxel| fills(triangle, center(*voxel, side), side / 2, rule, ties))
 }
 
 /// A voxel's place in lists: x fastest.
@@ -164,7 +170,7 @@ pub fn number([x, y, z]: Point, size: Point) -> usize {
 pub fn count(triangles: &[Triangle], size: Point, rule: Rule, ties: Ties) -> Vec<u32> {
     let mut counts = vec![0; size.into_iter().product::<i64>() as usize];
     for triangle in triangles {
-        voxels(triangle, size, rule, ties).for_each(|voxel| counts[number(voxel, size)] += 1);
+        voxels(triangle, size, VOXEL, rule, ties).for_each(|voxel| counts[number(voxel, size)] += 1);
     }
     counts
 }
