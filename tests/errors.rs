@@ -26,7 +26,7 @@ use std::{env, fs, thread};
 use tempfile::TempDir;
 
 /// What has to be covered, by names of cases.
-const REQUIRED: [&str; 51] = [
+const REQUIRED: [&str; 52] = [
     "syntax",
     "unknown-field",
     "duplicate-key",
@@ -72,6 +72,7 @@ const REQUIRED: [&str; 51] = [
     "hostile-pipeline",
     "scene-missing",
     "scene-broken",
+    "part-lacks",
     "part-role",
     "override-value",
     "override-missing",

@@ -2,6 +2,7 @@
 
 use super::binding::{self, Binder};
 use super::facts;
+use super::missing::Missing;
 use super::{
     Action, Draw, Graph, Linked, Raster, Resource, Stage, Threads, Touch, Usage, check, resource, target,
 };
@@ -27,6 +28,7 @@ struct Linker<'a> {
     resources: Vec<Resource>,
     first_use: BTreeMap<ResourceId, Place>,
     warnings: Vec<Problem>,
+    missing: Missing,
 }
 
 /// Links every stage of `plan`. A stage that is off need not link; one that should run must.
@@ -37,6 +39,7 @@ pub fn link(plan: Plan, linking: Linking<'_>) -> Result<Graph> {
         resources: resource::planned(&plan),
         first_use: BTreeMap::new(),
         warnings: plan.warnings.clone(),
+        missing: Missing::default(),
     };
     let mut problems: Vec<Problem> = Vec::new();
     let mut stages = Vec::with_capacity(plan.stages.len());
@@ -60,6 +63,7 @@ pub fn link(plan: Plan, linking: Linking<'_>) -> Result<Graph> {
             }
         }
     }
+    problems.extend(std::mem::take(&mut linker.missing).problems(&plan));
     if problems.is_empty() {
         for index in off {
             linked[index] = linker.stage(&plan.stages[index]).ok();
@@ -117,7 +121,7 @@ impl Names for ScopeNames<'_> {
 
 impl Linker<'_> {
     fn stage(&mut self, planned: &PlannedStage) -> Result<Linked, Vec<Problem>> {
-        let reflected = self.reflect(planned).map_err(|p| p.iter().cloned().collect::<Vec<_>>())?;
+        let reflected = self.reflect(planned)?;
         let entries = choose(planned, &reflected).map_err(|p| vec![p])?;
         let vertex = entries.iter().any(|e| e.stage == kernel::Stage::Vertex);
         let mut depends = BTreeSet::new();
@@ -185,13 +189,16 @@ impl Linker<'_> {
         Ok(Linked { reflected, program, bindings, action, touches, depends, formats })
     }
 
-    fn reflect(&mut self, planned: &PlannedStage) -> Result<Arc<Reflected>> {
+    fn reflect(&mut self, planned: &PlannedStage) -> Result<Arc<Reflected>, Vec<Problem>> {
         let roles =
             self.plan.modules.iter().map(|(role, module)| (role.clone(), module.kernel.clone())).collect();
         let names = ScopeNames { plan: self.plan, scope: planned.scope, features: self.linking.features };
-        let composed = compose(self.linking.library, &planned.kernel, &planned.kernel_place, &roles, &names)?;
+        let library = self.linking.library;
+        let composed = compose(library, &planned.kernel, &planned.kernel_place, &roles, &names)
+            .map_err(|found| found.iter().cloned().collect::<Vec<_>>())?;
         let overrides = self.overrides(planned, &composed);
-        self.linking.variants.reflect(&composed, &overrides)
+        let reflected = self.linking.variants.reflect(&composed, &overrides);
+        reflected.map_err(|found| self.missing.sort(&found, &composed, self.plan, library))
     }
 
     /// The knobs that the stage sees and the kernel declares as `override`.

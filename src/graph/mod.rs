@@ -9,6 +9,7 @@ pub mod check;
 pub mod facts;
 pub mod formats;
 mod link;
+mod missing;
 mod resource;
 mod target;
 mod uniform;

@@ -7,7 +7,7 @@ use super::{Binding, Entry, Override};
 use crate::expr::{Names, Value};
 use crate::library::{Library, Shelf};
 use crate::problem::{Result, Source};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A kernel or a module, with all that any variant of it may have.
 #[derive(Clone, Debug)]
@@ -69,6 +69,23 @@ pub fn describe(library: &Library, name: &str, roles: &BTreeMap<String, String>)
         description.overrides = reflected.overrides;
     }
     Ok(description)
+}
+
+/// Whether the file `kernel`, or one that it imports by its own name, declares `name` under some condition.
+pub fn declares(library: &Library, kernel: &str, name: &str) -> bool {
+    let mut seen = BTreeSet::from([kernel.to_owned()]);
+    let mut open = vec![kernel.to_owned()];
+    while let Some(kernel) = open.pop() {
+        let Ok(source) = library.find(Shelf::Kernels, &kernel) else { continue };
+        let scan = scan(&source, &Anything);
+        if scan.declarations.iter().any(|declaration| declaration.name == name) {
+            return true;
+        }
+        let imports =
+            scan.imports.into_iter().map(|(path, _)| path).filter(|path| !path.starts_with("role/"));
+        open.extend(imports.filter(|path| seen.insert(path.clone())));
+    }
+    false
 }
 
 /// The roles that a file and its imports name, and that are not given. What is wrong otherwise, composing tells.

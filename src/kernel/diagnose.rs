@@ -1,12 +1,21 @@
 //! What naga says about composed text, said about the author's files and in WGSL's own words.
 
 use super::compose::{Composed, Segment};
-use crate::problem::Problem;
+use crate::problem::{Place, Problem};
 use naga::WithSpan;
 use naga::front::wgsl::ParseError;
 use naga::valid::{EntryPointError, FunctionError, GlobalUse, ValidationError};
 use std::collections::BTreeSet;
 use std::error::Error;
+
+/// How naga begins to say that a name is not there; the name follows, quoted.
+const UNDEFINED: &str = "no definition in scope for identifier: ";
+
+/// The name and its place, if `problem` is that the text uses one which is declared nowhere.
+pub fn undefined(problem: &Problem) -> Option<(&str, &Place)> {
+    let name = problem.message.strip_prefix(UNDEFINED)?;
+    Some((name.trim_matches('`'), &problem.labels.first()?.0))
+}
 
 /// A text that is not WGSL, or that uses names or types wrongly.
 pub fn parse_error(composed: &Composed, error: &ParseError) -> Problem {
@@ -29,7 +38,7 @@ pub fn parse_error(composed: &Composed, error: &ParseError) -> Problem {
 
 /// A name that is not there may be one that another part's module has.
 fn parts_that_could(composed: &Composed, message: &str) -> Option<String> {
-    let missing = message.contains("no definition in scope");
+    let missing = message.starts_with(UNDEFINED);
     let role = |segment: &Segment| Some(format!("`role/{}` is `{}`", segment.role.as_ref()?, segment.kernel));
     let roles: BTreeSet<String> = composed.segments.iter().filter_map(role).collect();
     let roles: Vec<String> = roles.into_iter().collect();

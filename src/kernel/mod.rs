@@ -18,7 +18,8 @@ mod token;
 mod variants;
 
 pub use compose::{Composed, Declared, Segment, compose};
-pub use describe::{Description, describe};
+pub use describe::{Description, declares, describe};
+pub use diagnose::undefined;
 pub use finish::{Bound, Choice, Program, VariantKey, finish};
 pub use reflect::{Reflected, reflect};
 pub use scan::Declaration;

@@ -26,7 +26,7 @@ mod walk;
 mod work;
 mod world;
 
-pub use parts::SCENE_RESOURCES;
+pub use parts::{SCENE_RESOURCES, with_module};
 pub use setup::{Elements, LightKind, Setup};
 pub use walk::MAX_STAGES;
 pub use work::triangles;
@@ -188,6 +188,10 @@ pub enum Named {
 #[derive(Clone, Debug)]
 pub struct Module {
     pub kernel: String,
+    /// The part that brings it: its role, its name and what it says of itself.
+    pub role: String,
+    pub part: String,
+    pub about: String,
     pub scope: ScopeId,
     pub place: Place,
     /// Bindings that stand for other resources in stages over what moves.

@@ -19,6 +19,9 @@ pub(super) fn modules(players: &[(&Player, ScopeId)], world: &mut World<'_>) -> 
         for (name, module) in player.modules() {
             let mut found = Module {
                 kernel: module.value.clone(),
+                role: player.role.clone(),
+                part: player.part.clone(),
+                about: player.document.about.value.clone(),
                 scope: *scope,
                 place: module.place.clone(),
                 moving: BTreeMap::new(),
@@ -114,6 +117,19 @@ pub(super) fn players(pipeline: &Document, library: &Library, setup: &Setup) -> 
     }
     Problems::check(problems)?;
     Ok(players)
+}
+
+/// The parts of the library that play `role` and bring a module behind `role/BEHIND`: their names and the module's
+/// kernel. What can't be read is passed over.
+pub fn with_module(library: &Library, role: &str, behind: &str) -> Vec<(String, String)> {
+    let nowhere = Source::new("", "").at(0..0);
+    let players = library.list(Shelf::Parts).into_iter();
+    let players = players.filter_map(|part| player(role, &part, &nowhere, library).ok());
+    let module = |player: Player| {
+        let kernel = player.modules().find(|(name, _)| *name == behind)?.1.value.clone();
+        Some((player.part, kernel))
+    };
+    players.filter_map(module).collect()
 }
 
 fn player(role: &str, part: &str, place: &Place, library: &Library) -> Result<Player> {

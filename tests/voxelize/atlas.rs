@@ -1,7 +1,7 @@
 //! The atlas voxelizer against the exact tests of overlap: nothing where surfaces are not, and how much is missed.
 
 use crate::lattice::Lattice;
-use crate::oracle::{Rule, Ties, VOXEL, count, filled, snapped};
+use crate::oracle::{HALF, Rule, Ties, VOXEL, count, filled, snapped};
 use crate::random::{Region, hardened};
 use crate::support::scenes;
 use crate::voxelizer::{Grid, METHODS, Way, counted, run};
@@ -12,6 +12,7 @@ use std::sync::Arc;
 use voxgi::expr::Value;
 use voxgi::frame::Image;
 use voxgi::library::Library;
+use voxgi::record;
 use voxgi::scene::atlas::Atlas;
 use voxgi::scene::{self, Scene};
 use voxgi::session::{Request, prepare};
@@ -187,4 +188,31 @@ fn only_who_asks_has_surfaces_unwrapped() {
     assert!(format!("{problem:?}").contains("still_map"), "{problem:?}");
     // Without a scene it stays open.
     prepare(&request, &library, None).expect("it is right");
+}
+
+/// Triangles without area have no place in the atlas, and other voxelizers fill what they meet: a scene with some is
+/// told what it loses.
+#[test]
+fn what_has_no_place_in_the_atlas_is_said() {
+    let lattice = Lattice::cube(32);
+    let [flat, line] = [[9, 5, 1], [9, 1, 1]].map(|last| {
+        let corners = [[1, 1, 1], [5, 1, 1], last];
+        corners.map(|corner| corner.map(|i| i * VOXEL + HALF))
+    });
+    let [whole, losing] =
+        [vec![flat], vec![flat, line]].map(|t| unwrapped(lattice.scene(&lattice.fixed(&t))));
+    let library = Library::new(Vec::new()).expect("the library");
+    let lacks = |part: String, scene: Option<&Scene>| {
+        let parts = vec![("voxelize".to_owned(), part)];
+        let request = Request { pipeline: "voxels".to_owned(), parts, ..Request::default() };
+        let prepared = prepare(&request, &library, scene).expect("it is right");
+        let listed = prepared.graph.plan.lacks.len();
+        (listed, scene.map_or(0, |scene| record::lacks(scene, &prepared.graph).len()))
+    };
+    assert_eq!(lacks("voxelize/atlas".to_owned(), Some(&losing)), (1, 1));
+    assert_eq!(lacks("voxelize/atlas".to_owned(), Some(&whole)), (0, 0));
+    assert_eq!(lacks("voxelize/atlas".to_owned(), None), (1, 0), "it may be so");
+    METHODS
+        .iter()
+        .for_each(|method| assert_eq!(lacks(method.to_string(), Some(&losing)), (0, 0), "{method}"));
 }

@@ -119,7 +119,10 @@ fn sums_are_full_before_they_overflow() {
             let words = Sums::of(&scene, &lattice.grid, method, Rule::Conservative).voxel(CROWDED);
             // Threads that begin at the same time as the last one still add.
             assert!((full..full + sums * 1000 * weight).contains(&words[0]), "{method}: {words:?}");
-            assert!(words[0] % weight == 0 && words[0] < sums * 40_000 * weight, "{method}: {words:?}");
+            assert!(
+                words[0].is_multiple_of(weight) && words[0] < sums * 40_000 * weight,
+                "{method}: {words:?}"
+            );
             assert_eq!(words[1..4], [words[0]; 3], "{method}");
             let normal = [words[4], words[5], words[6]].map(u32::cast_signed);
             assert_eq!(normal, [-(words[0] / 2).cast_signed(), 0, 0], "{method}");

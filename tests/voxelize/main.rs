@@ -3,6 +3,7 @@
 //! also made wrong on purpose, which must show.
 
 mod atlas;
+mod choices;
 mod compact;
 mod corners;
 mod crowds;
@@ -21,6 +22,7 @@ mod properties;
 mod random;
 mod scans;
 mod slices;
+mod snapping;
 mod solid;
 mod sums;
 #[path = "../support/scenes.rs"]

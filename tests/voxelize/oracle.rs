@@ -3,7 +3,9 @@
 //! A voxel's side is [`VOXEL`] units; voxel i covers the units from i · VOXEL to (i + 1) · VOXEL, both included for the
 //! conservative rule. Corners are odd units, so that none lies there.
 
+use rayon::prelude::*;
 use std::ops::RangeInclusive;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Units of a voxel's side. The voxelizer snaps corners to odd ones.
 pub const VOXEL: i64 = 4096;
@@ -23,6 +25,9 @@ pub enum Rule {
     /// meets the voxel's axis that is nearest to the normal (of equal ones z, then x), its upper end not included; and
     /// in each projection every edge has an end of the voxel's two axes on its inner side.
     Thin,
+    /// The same without the bounds: a voxel beyond them is filled too, beside a sharp corner, if the plane and all
+    /// projections say so. Published counts are of this set. No voxelizer here has it.
+    ThinBeyond,
 }
 
 impl Rule {
@@ -30,7 +35,12 @@ impl Rule {
 
     /// The knob's value.
     pub fn separability(self) -> &'static str {
-        if self == Self::Thin { "6" } else { "26" }
+        if self == Self::Conservative { "26" } else { "6" }
+    }
+
+    /// How many voxels beyond a triangle's bounds are asked about.
+    fn beyond(self) -> i64 {
+        i64::from(self == Self::ThinBeyond)
     }
 }
 
@@ -73,14 +83,16 @@ fn fills(triangle: &Triangle, center: Point, half: i64, rule: Rule, ties: Ties) 
     let size = n.map(i128::abs);
     match rule {
         // Without area it is a segment or a point, and fills what it meets.
-        Rule::Thin if n == [0; 3] => fills(triangle, center, half as i64, Rule::Conservative, ties),
+        Rule::Thin | Rule::ThinBeyond if n == [0; 3] => {
+            fills(triangle, center, half as i64, Rule::Conservative, ties)
+        }
         // Separating axes (Akenine-Möller 2001): the cube's, the normal, and each edge with each of the cube's.
         Rule::Conservative => {
             let reach = |axis: [i128; 3]| half * axis.iter().map(|x| x.abs()).sum::<i128>();
             let sides = || edges.iter().flat_map(|edge| units.iter().map(|unit| cross(*edge, *unit)));
             boxes && along(n, reach(n)) && sides().all(|axis| along(axis, reach(axis)))
         }
-        Rule::Thin => {
+        Rule::Thin | Rule::ThinBeyond => {
             let largest = size.into_iter().max().unwrap_or_default();
             let nearest = [2, 0, 1].into_iter().find(|axis| size[*axis] == largest).unwrap_or_default();
             // Of the plane above the middle, along the axis; times the largest component.
@@ -90,7 +102,7 @@ fn fills(triangle: &Triangle, center: Point, half: i64, rule: Rule, ties: Ties) 
                 Ties::DoNotCount => above.abs() < half * largest,
             };
             let projections = [(0, 1, 2), (1, 2, 0), (2, 0, 1)];
-            boxes
+            (boxes || rule == Rule::ThinBeyond)
                 && plane
                 && projections.iter().all(|&(u, v, w)| {
                     (0..3).all(|i| {
@@ -111,16 +123,17 @@ pub fn snapped(triangles: &[Triangle]) -> Vec<Triangle> {
     triangles.iter().map(|triangle| triangle.map(|corner| corner.map(odd))).collect()
 }
 
-/// The voxels along an axis of a grid with `size` of them, `side` units each, that a triangle's bounds meet.
-fn range(triangle: &Triangle, axis: usize, size: i64, side: i64) -> RangeInclusive<i64> {
+/// The voxels along an axis of a grid with `size` of them, `side` units each, that a triangle's bounds meet; and
+/// `beyond` on either side.
+fn range(triangle: &Triangle, axis: usize, size: i64, side: i64, beyond: i64) -> RangeInclusive<i64> {
     let places = triangle.map(|corner| corner[axis].div_euclid(side));
     let (low, high) = (places.into_iter().min(), places.into_iter().max());
-    low.unwrap_or_default().max(0)..=high.unwrap_or_default().min(size - 1)
+    (low.unwrap_or_default() - beyond).max(0)..=(high.unwrap_or_default() + beyond).min(size - 1)
 }
 
-/// The voxels of a grid that a triangle's bounds meet.
-fn around(triangle: &Triangle, size: Point, side: i64) -> impl Iterator<Item = Point> {
-    let [x, y, z] = [0, 1, 2].map(|axis| range(triangle, axis, size[axis], side));
+/// The voxels of a grid that a triangle's bounds meet, and `beyond` on all sides.
+fn around(triangle: &Triangle, size: Point, side: i64, beyond: i64) -> impl Iterator<Item = Point> {
+    let [x, y, z] = [0, 1, 2].map(|axis| range(triangle, axis, size[axis], side, beyond));
     z.flat_map(move |z| {
         let x = x.clone();
         y.clone().flat_map(move |y| x.clone().map(move |x| [x, y, z]))
@@ -128,7 +141,12 @@ fn around(triangle: &Triangle, size: Point, side: i64) -> impl Iterator<Item = P
 }
 
 pub fn voxels_around(triangle: &Triangle, size: Point) -> impl Iterator<Item = Point> {
-    around(triangle, size, VOXEL)
+    around(triangle, size, VOXEL, 0)
+}
+
+/// The center of a voxel whose side is `side` units.
+fn center(voxel: Point, side: i64) -> Point {
+    voxel.map(|i| i * side + side / 2)
 }
 
 /// The voxels of a grid that a triangle fills, where a voxel's side is `side` units.
@@ -139,8 +157,8 @@ pub fn voxels(
     rule: Rule,
     ties: Ties,
 ) -> impl Iterator<Item = Point> {
-    let center = move |voxel: Point| voxel.map(|i| i * side + side / 2);
-    around(triangle, size, side).filter(move |voxel| fills(triangle, center(*voxel), side / 2, rule, ties))
+    around(triangle, size, side, rule.beyond())
+        .filter(move |voxel| fills(triangle, center(*voxel, side), side / 2, rule, ties))
 }
 
 /// A voxel's place in lists: x fastest.
@@ -165,4 +183,37 @@ pub fn differences(a: &[u32], b: &[u32]) -> usize {
 
 pub fn filled(counts: &[u32]) -> usize {
     counts.iter().filter(|count| **count > 0).count()
+}
+
+/// Voxels of a grid, a bit each in the order of [`number`].
+pub struct Set(Vec<u64>);
+
+impl Set {
+    /// What any of the triangles fills, where a voxel's side is `side` units and touching counts. All processors work
+    /// on it, and what is filled isn't asked about again.
+    pub fn of(triangles: &[Triangle], size: Point, side: i64, rule: Rule) -> Self {
+        let voxels = size.into_iter().product::<i64>() as usize;
+        let words: Vec<_> = (0..voxels.div_ceil(64)).map(|_| AtomicU64::new(0)).collect();
+        triangles.par_iter().for_each(|triangle| {
+            for voxel in around(triangle, size, side, rule.beyond()) {
+                let at = number(voxel, size);
+                let (word, bit) = (&words[at / 64], 1 << (at % 64));
+                let known = word.load(Ordering::Relaxed) & bit != 0;
+                if !known && fills(triangle, center(voxel, side), side / 2, rule, Ties::Count) {
+                    word.fetch_or(bit, Ordering::Relaxed);
+                }
+            }
+        });
+        Self(words.into_iter().map(AtomicU64::into_inner).collect())
+    }
+
+    pub fn filled(&self) -> usize {
+        self.0.iter().map(|word| word.count_ones() as usize).sum()
+    }
+
+    /// How many voxels are in one of the two alone.
+    pub fn differences(&self, other: &Self) -> usize {
+        assert_eq!(self.0.len(), other.0.len(), "grids of other sizes");
+        self.0.iter().zip(&other.0).map(|(a, b)| (a ^ b).count_ones() as usize).sum()
+    }
 }

@@ -1,0 +1,5 @@
+// The same everywhere.
+
+fn shade() -> f32 {
+    return 1.0;
+}
