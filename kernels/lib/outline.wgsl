@@ -97,12 +97,9 @@ fn outline_of(placed: Placed, thin: bool) -> Outline {
     return best;
 }
 
-/// Where a vertex of what is drawn for a triangle lies, in a square as wide as the grid's longest side. Columns are along
-/// the triangle's z; where it does not meet the grid nothing is drawn.
+/// Where a vertex of what is drawn for a triangle that meets the grid lies, in a square as wide as the grid's longest
+/// side. Columns are along the triangle's z.
 fn outline_vertex(placed: Placed, vertex: u32, separability: u32) -> vec4f {
-    if !placed.meets {
-        return vec4f(2.0, 2.0, 0.5, 1.0);
-    }
     let outline = outline_of(placed, separability == THIN && any(placed.facing.signs != vec3i(0)));
     let side = f32(max(values.grid_size.x, max(values.grid_size.y, values.grid_size.z)));
     let at = 2.0 / side * (outline.corners[vertex] + vec2f(placed.first.xy)) - 1.0;
