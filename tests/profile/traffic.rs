@@ -101,5 +101,5 @@ fn copies_are_as_fast_by_both_clocks() {
         speeds.best().expect("a speed")
     });
     println!("by timestamps {:.2} GB/s, by the wall {:.2} GB/s", speeds[0], speeds[1]);
-    assert!((0.2..5.0).contains(&(speeds[0] / speeds[1])), "{speeds:?}");
+    assert!((0.33..3.0).contains(&(speeds[0] / speeds[1])), "{speeds:?}");
 }

@@ -94,7 +94,7 @@ fn points_lie_in_voxels_that_triangles_touch() {
     }
 }
 
-/// The weights of all points together are the area of what is voxelized, for each triangle as for all.
+/// The weights of all points together are the area of what is voxelized.
 #[test]
 fn weights_of_points_are_their_share_of_the_surface() {
     let lattice = Lattice::cube(32);

@@ -242,16 +242,27 @@ fn what_does_not_fit_is_said() {
 #[test]
 fn all_that_does_not_fit_is_counted() {
     let lattice = Lattice::cube(40);
-    let scene = loaded(&plain(&lattice));
-    assert_eq!(scene.still_triangles, scene.triangles.len());
-    let of = |payload| set(request("words", payload, VOXELIZERS[0]), "resolution", 40);
-    let few = Held::of(&set(of(COMPACT), "capacity", 300), &scene);
-    let way = Way { method: METHODS[0], payload: COUNT, rule: Rule::Thin };
-    let counts = counted(&scene, &lattice.grid, &way);
-    let words = few.words.chunks_exact(10).zip(&counts);
-    let lost: u64 = words.filter(|(words, _)| words[0] == 0).map(|(_, count)| u64::from(*count)).sum();
-    assert!(lost > 1000);
-    assert_eq!(few.without_room, lost);
+    // Nothing moves, or all but what fixes the grid, far from the others: no voxel has fragments of both.
+    let fixing = lattice.part(&lattice.fixed(&[]));
+    let loose = lattice.part(&crowd(&lattice, &mut Rng::with_seed(33)));
+    let still = Model { parts: vec![fixing, loose], ..Model::default() };
+    let motion = "(node: \"part1\", keys: [(time: 0), (time: 1, offset: (0.15, 0.1, 0)), (time: 2)])";
+    let moving = Model { motion: Some(motion.to_owned()), ..still.clone() };
+    for (model, some_move) in [(still, false), (moving, true)] {
+        let scene = loaded(&model);
+        assert_eq!(scene.still_triangles < scene.triangles.len(), some_move);
+        let way = Way { method: METHODS[0], payload: COUNT, rule: Rule::Thin };
+        let counts = counted(&scene, &lattice.grid, &way);
+        for voxelizer in [VOXELIZERS[0], VOXELIZERS[5]] {
+            let few = set(request("words", COMPACT, voxelizer), "resolution", 40);
+            let few = Held::of(&set(few, "capacity", 300), &scene);
+            let words = few.words.chunks_exact(10).zip(&counts);
+            let without = words.filter(|(words, _)| words[0] == 0);
+            let lost: u64 = without.map(|(_, count)| u64::from(*count)).sum();
+            assert!(lost > 1000, "{voxelizer:?}");
+            assert_eq!(few.without_room, lost, "{voxelizer:?}, some move: {some_move}");
+        }
+    }
 }
 
 /// From frame to frame, what moved leaves its slots: there are too few for all that is filled over time.
